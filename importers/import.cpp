@@ -197,6 +197,7 @@ Result<ImportedOrgan> fill_repaired(const RepairedFile& file, std::size_t index,
   FillOptions fill;
   fill.sphere_radius = options.sphere_radius;
   fill.gap = options.gap;
+  fill.lattice_shift = options.lattice_shift;
   fill.keep_islands = options.all_parts;
   fill.most_spheres = options.most_spheres;
   fill.most_triangles = options.most_triangles;

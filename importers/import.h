@@ -25,6 +25,7 @@ struct ImportOptions {
   std::optional<double> largest_hole;  ///< holes up to this diameter are filled [m]; unset: a tenth of the diagonal
   double sphere_radius = 0.004;        ///< r [m], > 0
   double gap = -1;                     ///< between the surfaces of neighbours [m], >= 0; negative: r
+  Vec3 lattice_shift;                  ///< see FillOptions
   std::int64_t most_spheres = 2'000'000;  ///< more are refused
   std::int64_t most_triangles = 0;        ///< a drawn surface with more is coarsened; 0: never
   int threads = 2;                        ///< >= 1; the result does not depend on it

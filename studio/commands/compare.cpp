@@ -42,17 +42,22 @@ Result<Done> write_page(const std::string& folder, compare::ComparedFiles& files
                                    pictures ? *pictures : std::vector<compare::MomentPictures>(), to_see_worst);
 }
 
+Result<compare::ComparedFiles> compare_opened(compare::OpenedFiles files, const CompareArguments& arguments) {
+  compare::CompareFilesOptions options;
+  if (arguments.has_force_limit) options.force_limit = arguments.force_limit_n;
+  if (arguments.verify) options.replaying = *arguments.verify ? compare::Replaying::all : compare::Replaying::none;
+  ProgressLine progress("comparing");
+  options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
+  return compare::compare_files(std::move(files), options);
+}
+
 int run_compare(const CompareArguments& arguments) {
   if (arguments.has_force_limit && !(arguments.force_limit_n > 0))
     return print_errors({{"--force-limit", "must be above 0 N", ""}});
   Result<compare::OpenedFiles> opened = compare::open_files(arguments.expert, arguments.trainee);
   if (!opened) return print_errors(opened.errors());
   warn_of_physics(opened->expert), warn_of_physics(opened->trainee);
-  Result<compare::ComparedFiles> files = compare::compare_files(
-      std::move(*opened), arguments.has_force_limit ? std::optional(arguments.force_limit_n) : std::nullopt,
-      !arguments.verify   ? compare::Replaying::short_ones
-      : *arguments.verify ? compare::Replaying::all
-                          : compare::Replaying::none);
+  Result<compare::ComparedFiles> files = compare_opened(*std::move(opened), arguments);
   if (!files) return print_errors(files.errors());
   // Created only now, so that refused sessions leave no folder behind.
   if (!arguments.folder.empty())

@@ -1,6 +1,8 @@
 #include "studio/compare/compare_files.h"
 
+#include <array>
 #include <future>
+#include <mutex>
 #include <utility>
 
 #include "scenes/scene_file.h"
@@ -20,17 +22,44 @@ Result<OpenedFiles> open_files(const std::string& expert, const std::string& tra
   return OpenedFiles{std::move(*a), std::move(*b)};
 }
 
-Result<ComparedFiles> compare_files(OpenedFiles files, std::optional<double> force_limit, Replaying replaying) {
+namespace {
+
+/// How far two replays have come that run beside each other.
+class SharedProgress {
+ public:
+  SharedProgress(const CompareFilesOptions& options, std::int64_t total) : options_(options), total_(total) {}
+
+  ReplayWatch of(std::size_t session) {
+    return [this, session](std::int64_t tick) {
+      if (options_.should_stop && options_.should_stop()) return false;
+      const std::lock_guard lock(mutex_);
+      at_[session] = tick;
+      if (options_.progress) options_.progress(at_[0] + at_[1], total_);
+      return true;
+    };
+  }
+
+ private:
+  const CompareFilesOptions& options_;
+  std::int64_t total_;
+  std::mutex mutex_;
+  std::array<std::int64_t, 2> at_{};
+};
+
+}  // namespace
+
+Result<ComparedFiles> compare_files(OpenedFiles files, const CompareFilesOptions& how) {
+  SharedProgress progress(how, files.expert.tick_count() + files.trainee.tick_count());
   // Each replay takes one processor.
   std::future<Result<SessionTrack>> other =
-      std::async(std::launch::async, [&] { return read_track(files.expert, replaying); });
-  Result<SessionTrack> trainee = read_track(files.trainee, replaying), expert = other.get();
+      std::async(std::launch::async, [&] { return read_track(files.expert, how.replaying, progress.of(0)); });
+  Result<SessionTrack> trainee = read_track(files.trainee, how.replaying, progress.of(1)), expert = other.get();
   Errors errors;
   for (const auto* track : {&expert, &trainee})
     if (!*track) errors.insert(errors.end(), track->errors().begin(), track->errors().end());
   if (!errors.empty()) return errors;
   CompareOptions options;
-  options.force_limit = force_limit;
+  options.force_limit = how.force_limit;
   const recordings::SessionStart& scene = files.expert.start();
   // A scene text of another version may be unreadable; only the limit is needed from it.
   if (const Result<scenes::SceneText> text = scenes::read_scene(scene.scene_text, files.expert.path()); text)

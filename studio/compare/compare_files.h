@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,9 +28,13 @@ struct OpenedFiles {
 };
 Result<OpenedFiles> open_files(const std::string& expert, const std::string& trainee);
 
-/// Compares them. `force_limit` [N]: see CompareOptions. `replaying`: see read_track(). Errors: a damaged session; no
-/// tool is ever held.
-Result<ComparedFiles> compare_files(OpenedFiles files, std::optional<double> force_limit,
-                                    Replaying replaying = Replaying::short_ones);
+struct CompareFilesOptions {
+  std::optional<double> force_limit;  ///< [N], see CompareOptions
+  Replaying replaying = Replaying::short_ones;
+  std::function<void(std::int64_t done, std::int64_t total)> progress = {};  ///< in ticks of both; one call at a time
+  std::function<bool()> should_stop = {};                                    ///< asked by two threads
+};
+/// Compares them. Errors: a damaged session; no tool is ever held; `should_stop` ended it.
+Result<ComparedFiles> compare_files(OpenedFiles files, const CompareFilesOptions& options = {});
 
 }  // namespace ctpm::compare

@@ -93,11 +93,12 @@ class BladeDepth {
 /// Replays ticks [from, to) and stores the tick in which each element was severed. `look(tick, report)` sees each tick.
 template <class Look>
 Result<Done> replay_ticks(recordings::ReplayCursor& cursor, std::int64_t from, std::int64_t to, SessionTrack& track,
-                          Look&& look) {
+                          const ReplayWatch& watch, Look&& look) {
   if (const Result<Done> found = cursor.seek(from); !found) return found.errors();
   std::vector<std::uint8_t> before = severed_flags(cursor.state());
   while (cursor.tick() < to) {
     const std::int64_t tick = cursor.tick();
+    if (watch && !watch(tick)) return Error{track.path, "stopped", ""};
     if (const Result<bool> stepped = cursor.step(); !stepped) return stepped.errors();
     look(std::size_t(tick), cursor.report());
     if (cursor.report().severed == 0) continue;
@@ -112,7 +113,7 @@ Result<Done> replay_ticks(recordings::ReplayCursor& cursor, std::int64_t from, s
 
 /// Replays every tick. If all are as recorded, takes what the tool did to the tissue from the replay: the recorded
 /// numbers have no hash of their own.
-Result<Done> replay_all(recordings::SessionReader& session, SessionTrack& track) {
+Result<Done> replay_all(recordings::SessionReader& session, SessionTrack& track, const ReplayWatch& watch) {
   track.severed_at.assign(ElementPlaces(session.start().model).count, -1);
   Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(session);
   if (!cursor) return cursor.errors();
@@ -123,8 +124,8 @@ Result<Done> replay_all(recordings::SessionReader& session, SessionTrack& track)
   for (const session::Probe& probe : probes) track.probes.push_back({probe.name, {}});
   const Vec3Array before = session.start().initial_state.position;
   BladeDepth blade(session.start().model, track);
-  const Result<Done> replayed =
-      replay_ticks(*cursor, 0, session.tick_count(), track, [&](std::size_t tick, const stepping::StepReport& report) {
+  const Result<Done> replayed = replay_ticks(
+      *cursor, 0, session.tick_count(), track, watch, [&](std::size_t tick, const stepping::StepReport& report) {
         for (std::size_t i = 0; i < probes.size(); ++i)
           track.probes[i].way.push_back(norm(cursor->state().position[probes[i].sphere] - before[probes[i].sphere]));
         force[tick] = norm(report.of_hand(track.hand).tool_force), depth[tick] = report.of_hand(track.hand).depth;
@@ -152,7 +153,7 @@ Result<Done> replay_all(recordings::SessionReader& session, SessionTrack& track)
 }
 
 /// Replays the cuts alone.
-Result<Done> replay_cuts(recordings::SessionReader& session, SessionTrack& track) {
+Result<Done> replay_cuts(recordings::SessionReader& session, SessionTrack& track, const ReplayWatch& watch) {
   track.severed_at.assign(ElementPlaces(session.start().model).count, -1);
   if (track.cuts.empty()) return Done{};
   Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(session);
@@ -160,7 +161,7 @@ Result<Done> replay_cuts(recordings::SessionReader& session, SessionTrack& track
   BladeDepth blade(session.start().model, track);
   for (const Spell& cut : track.cuts)
     if (const Result<Done> replayed =
-            replay_ticks(*cursor, std::int64_t(cut.first), std::int64_t(cut.last), track,
+            replay_ticks(*cursor, std::int64_t(cut.first), std::int64_t(cut.last), track, watch,
                          [&](std::size_t tick, const stepping::StepReport&) { blade.look(tick, cursor->state()); });
         !replayed)
       return replayed.errors();
@@ -340,17 +341,18 @@ Result<SessionTrack> read_recorded(recordings::SessionReader& session) {
   return track;
 }
 
-Result<SessionTrack> read_track(recordings::SessionReader& session, Replaying replaying) {
+Result<SessionTrack> read_track(recordings::SessionReader& session, Replaying replaying, const ReplayWatch& watch) {
   if (const Result<Done> whole = session.check_all(); !whole) return whole.errors();
   Result<SessionTrack> track = read_recorded(session);
   if (!track) return track.errors();
   if (track->strokes.empty()) return Error{session.path(), "no tool is ever in the hand", ""};
   const bool is_short = track->seconds(track->tick_count()) <= kShortSession;
   const bool all = replaying == Replaying::all || (replaying == Replaying::short_ones && is_short);
-  const Result<Done> replayed = all                            ? replay_all(session, *track)
+  const Result<Done> replayed = all                            ? replay_all(session, *track, watch)
                                 : replaying == Replaying::ends ? replay_end(session, *track)
-                                                               : replay_cuts(session, *track);
+                                                               : replay_cuts(session, *track, watch);
   if (!replayed) return replayed.errors();
+  if (watch) watch(session.tick_count());
   return track;
 }
 

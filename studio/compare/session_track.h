@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -75,9 +76,14 @@ enum class Replaying {
 };
 inline constexpr double kShortSession = 30;  ///< [s]
 
-/// Reads a whole session and replays it, or each cut alone from the keyframe before it. Errors: those of reading; a
-/// damaged block, named; no tool is ever held.
-Result<SessionTrack> read_track(recordings::SessionReader& session, Replaying replaying = Replaying::short_ones);
+/// Hears in which tick a replay is; false ends it.
+using ReplayWatch = std::function<bool(std::int64_t tick)>;
+
+/// Reads a whole session and replays it, or each cut alone from the keyframe before it. `watch`, if given, hears each
+/// replayed tick, and the last one when all is read. Errors: those of reading; a damaged block, named; no tool is ever
+/// held; `watch` ended it.
+Result<SessionTrack> read_track(recordings::SessionReader& session, Replaying replaying = Replaying::short_ones,
+                                const ReplayWatch& watch = {});
 
 /// Checks that both sessions have the same Model: network, tools and physics. Values that do not act on the tissue
 /// (cameras, colours) may differ. Errors: the first difference.

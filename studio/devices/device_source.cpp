@@ -42,19 +42,19 @@ bool DeviceSource::wait_for_first_pose(const std::function<bool()>& should_stop,
       tell(fault.empty() ? "nothing has come yet" : fault + "; samples refused so far: " + std::to_string(refused));
       said = fault, told = clock_();
     }
-    if (!take_reports()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (!take_reports(clock_())) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return true;
 }
 
 /// Takes all waiting reports. True if a good pose was among them.
-bool DeviceSource::take_reports() {
+bool DeviceSource::take_reports(double now) {
   bool has_new_pose = false;
   const std::int64_t refused_before = guard_.counts().refused + guard_.counts().unread;
   // Those of a flood are left for the next ticks: a tick never waits for a sender.
   DeviceReport report;
   for (int i = 0; i < kMostReports && device_->next(report); ++i)
-    if (guard_.take(report)) has_new_pose = true;
+    if (guard_.take(report)) has_new_pose = true, waits_.add(now - report.arrival);
   saw_fault_ = guard_.counts().refused + guard_.counts().unread != refused_before;
   return has_new_pose;
 }
@@ -73,7 +73,9 @@ void DeviceSource::aim(double now) {
 
 std::optional<Inputs> DeviceSource::next(std::int64_t, const stepping::StepReport& last) {
   const double now = clock_();
-  const bool has_new_pose = take_reports();
+  const bool has_new_pose = take_reports(now);
+  if (!has_ticked_) waits_ = {};  // for what was before the first tick no tick was there
+  has_ticked_ = true;
   guard_.look(now);
   if (!guard_.verdict().empty()) return std::nullopt;
   // A pose that no hand moved to is where the tool is put down and taken up again.
@@ -122,7 +124,9 @@ std::vector<recordings::NamedValue> DeviceSource::statistics() const {
           {"device_connections_refused", double(counts.turned_away)},
           {"device_messages_unread", double(counts.unread)},
           {"device_forces_sent", double(forces_)},
-          {"device_longest_gap_s", counts.longest_gap}};
+          {"device_longest_gap_s", counts.longest_gap},
+          {"device_pose_wait_p50_s", waits_.at(0.5)},
+          {"device_pose_wait_p99_s", waits_.at(0.99)}};
 }
 
 }  // namespace ctpm::devices

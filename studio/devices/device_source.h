@@ -11,6 +11,7 @@
 #include "studio/devices/device_guard.h"
 #include "studio/devices/device_map.h"
 #include "studio/devices/virtual_coupling.h"
+#include "studio/devices/wait_times.h"
 #include "studio/sources/input_source.h"
 
 namespace ctpm::devices {
@@ -43,7 +44,7 @@ class DeviceSource : public sources::InputSource {
   std::string fault() const override { return guard_.verdict(); }
 
  private:
-  bool take_reports();
+  bool take_reports(double now);
   void aim(double now);
   void send_force(bool has_new_pose);
 
@@ -61,6 +62,8 @@ class DeviceSource : public sources::InputSource {
   std::int64_t ticks_whole_ = 1;
   bool saw_fault_ = false;  ///< a report of this tick was refused
   double age_ = 0;
+  bool has_ticked_ = false;
+  WaitTimes waits_;  ///< of good poses since the first tick
   std::int64_t forces_ = 0;
 };
 

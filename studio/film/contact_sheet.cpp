@@ -11,11 +11,21 @@
 namespace ctpm::film {
 namespace {
 
-/// Copies a picture to a place of the page.
+constexpr int kFiner = 2;  // small pictures are drawn so many times as large: their outlines would be ragged
+
+/// Shrinks a picture by kFiner onto a place of the page.
 void put(render::Frame& page, const render::Frame& picture, int left, int top) {
-  for (int y = 0; y < picture.height; ++y)
-    std::copy_n(picture.rgb.begin() + std::ptrdiff_t(y) * picture.width * 3, picture.width * 3,
-                page.rgb.begin() + (std::ptrdiff_t(top + y) * page.width + left) * 3);
+  const auto at = [](const render::Frame& f, int x, int y) {
+    return 3 * (std::size_t(y) * std::size_t(f.width) + std::size_t(x));
+  };
+  for (int y = 0; y < picture.height / kFiner; ++y)
+    for (int x = 0; x < picture.width / kFiner; ++x)
+      for (std::size_t c = 0; c < 3; ++c) {
+        int sum = 0;
+        for (int i = 0; i < kFiner * kFiner; ++i)
+          sum += picture.rgb[at(picture, kFiner * x + i % kFiner, kFiner * y + i / kFiner) + c];
+        page.rgb[at(page, left + x, top + y) + c] = std::uint8_t(sum / (kFiner * kFiner));
+      }
 }
 
 }  // namespace
@@ -28,7 +38,8 @@ Result<Done> write_contact_sheet(recordings::SessionReader& session, const std::
   const Result<session::TickRange> range = options.range.in_ticks(session.path(), tick, session.tick_count());
   if (!range) return range.errors();
   ExportOptions small = options;
-  small.size = {options.size.width / kSheetColumns, options.size.height / kSheetRows};
+  const int wide = options.size.width / kSheetColumns, high = options.size.height / kSheetRows;
+  small.size = {kFiner * wide, kFiner * high};
   StillsRequest request;
   for (int i = 1; i <= kCount; ++i) {
     request.ticks.push_back(range->from + std::llround(double(range->to - range->from) * i / kCount));
@@ -41,8 +52,7 @@ Result<Done> write_contact_sheet(recordings::SessionReader& session, const std::
   if (!stills) return stills.errors();
   render::Frame page = render::blank_frame(options.size.width, options.size.height, 24, 24, 24);
   for (int i = 0; i < kCount; ++i)
-    put(page, stills->front()[std::size_t(i)], i % kSheetColumns * small.size.width,
-        i / kSheetColumns * small.size.height);
+    put(page, stills->front()[std::size_t(i)], i % kSheetColumns * wide, i / kSheetColumns * high);
   return render::write_png(path, page);
 }
 

@@ -62,9 +62,10 @@ void move_organ(FilledOrgan& organ, Vec3 by) {
 }
 
 Result<importers::ImportedOrgan> fill_of(const std::string& scene_path, const scenes::OrganSpec& organ,
-                                         const std::function<bool()>& should_stop) {
+                                         const std::function<bool()>& should_stop, Vec3 lattice_shift) {
   if (!organ.rig) {
     importers::ImportOptions options = import_options_of(organ);
+    options.lattice_shift = lattice_shift;
     options.should_stop = should_stop;
     Result<importers::ImportedOrgan> filled =
         importers::import_organ(scenes::mesh_path(scene_path, organ.mesh), options);

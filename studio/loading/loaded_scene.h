@@ -23,10 +23,11 @@ struct LoadedScene {
   scenes::BuiltScene built;
 };
 
-/// Fills one organ of a scene: its mesh, or its rig. Places in the report of a mesh are those of its file. Errors:
-/// those of the mesh. `should_stop`, if given, ends it with an error.
+/// Fills one organ of a scene: its mesh, whose lattice `lattice_shift` moves by so many spacings
+/// (importers::FillOptions), or its rig. Places in the report of a mesh are those of its file. Errors: those of the
+/// mesh. `should_stop`, if given, ends it with an error.
 Result<importers::ImportedOrgan> fill_of(const std::string& scene_path, const scenes::OrganSpec& organ,
-                                         const std::function<bool()>& should_stop = {});
+                                         const std::function<bool()>& should_stop = {}, Vec3 lattice_shift = {});
 
 /// Moves a filled organ [m]: its spheres lie in it alike wherever it is.
 void move_organ(FilledOrgan& organ, Vec3 by);

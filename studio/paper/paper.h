@@ -43,7 +43,7 @@ Result<Experiment> run_cut(const std::string& scenes, bool with_pictures);
 struct SagOfFilling {
   double radius = 0;  ///< of its spheres [mm]
   std::size_t spheres = 0;
-  double sag = 0;   ///< mean static displacement that gravity makes, downwards [mm]
+  double sag = 0;   ///< mean static displacement of the tissue that gravity makes, downwards [mm]
   double held = 0;  ///< height of the highest sphere that is held [mm]
 };
 /// The same organ filled with r, r/2 and r/4.

@@ -71,7 +71,8 @@ Result<State> settled(const Model& model, const std::string& name) {
 
 // Backward Euler with a tick far above every time constant is Newton's method for the static State.
 Result<double> at_rest(Model model, const std::string& name, const std::function<double(const State&)>& measure) {
-  constexpr double kEnough = 1e-6;  // change of the last step [share]
+  constexpr double kEnough = 1e-6;    // change of the last step [share]
+  constexpr double kNothing = 1e-12;  // of a Model that rests where it was built, only rounding is left
   constexpr int kMostSteps = 30;
   model.tick = 100;
   model.solver = {.tolerance = 1e-8,
@@ -87,7 +88,7 @@ Result<double> at_rest(Model model, const std::string& name, const std::function
     if (report.status != stepping::StepStatus::ok) break;
     const double before = value;
     value = measure(state);
-    if (std::abs(value - before) <= kEnough * std::abs(value)) return value;
+    if (std::abs(value - before) <= std::max(kNothing, kEnough * std::abs(value))) return value;
   }
   return Error{name, "does not come to rest under its loads", ""};
 }

@@ -45,6 +45,19 @@ class Font {
     return text + "...";
   }
 
+  /// The text in at most `most` lines of whole words; the last one as shortened().
+  std::vector<std::string> in_lines(std::string text, int limit, std::size_t most) {
+    std::vector<std::string> lines;
+    while (width(text) > limit && lines.size() + 1 < most) {
+      std::size_t end = text.rfind(' ');
+      while (end != std::string::npos && end > 0 && width(text.substr(0, end)) > limit) end = text.rfind(' ', end - 1);
+      if (end == std::string::npos || end == 0) break;
+      lines.push_back(text.substr(0, end)), text.erase(0, end + 1);
+    }
+    lines.push_back(shortened(text, limit));
+    return lines;
+  }
+
   /// The text, or as much of its beginning and end as fits: names of a pair differ at their end.
   std::string shortened_inside(const std::string& text, int limit) {
     std::string shown = text;
@@ -361,11 +374,16 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
   const bool is_free = is_narrow || is_alone;
   const int left = is_free ? px(5) : plan.plot.height > 0 ? plan.plot.x + plan.plot.width + px(10) : margin;
   const int right = is_free ? width - px(5) : plan.legend.height > 0 ? plan.legend.x - px(10) : width - margin;
-  const std::string text = large.shortened(data.caption, right - left - 2 * pad);
-  const int wide = large.width(text) + 2 * pad, high = px(23) + 2 * px(13);
+  // A still has nothing else to make room for.
+  const std::vector<std::string> texts = large.in_lines(data.caption, right - left - 2 * pad, is_alone ? 2 : 1);
+  int wide = 0;
+  for (const std::string& text : texts) wide = std::max(wide, large.width(text) + 2 * pad);
+  const int high = px(23) + 2 * px(13) + px(32) * int(texts.size() - 1);
   plan.caption = {std::clamp((width - wide) / 2, left, std::max(left, right - wide)),
                   is_alone ? height - high : bottom - h - px(10) - high, wide, high};
-  plan.lines.push_back(line(large, text, plan.caption.x + pad, plan.caption.y + px(13), kWhite));
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    plan.lines.push_back(line(large, texts[i], plan.caption.x + (wide - large.width(texts[i])) / 2,
+                              plan.caption.y + px(13) + int(i) * px(32), kWhite));
 }
 
 void Overlay::Parts::draw_bar(cv::Mat& rgb, const Legend& legend, const PixelBox& bar) const {

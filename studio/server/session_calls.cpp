@@ -120,7 +120,9 @@ Result<std::string> compare_sessions(Parameters& parameters, const CallContext& 
     if (!*file) return file->errors();
   Result<compare::OpenedFiles> opened = compare::open_files(*expert_file, *trainee_file);
   if (!opened) return opened.errors();
-  const Result<compare::ComparedFiles> files = compare::compare_files(std::move(*opened), force_limit);
+  compare::CompareFilesOptions options;
+  options.force_limit = force_limit, options.progress = context.progress, options.should_stop = context.should_stop;
+  const Result<compare::ComparedFiles> files = compare::compare_files(std::move(*opened), options);
   if (!files) return files.errors();
   const compare::ComparedSessions compared = files->sessions();
   output::JsonWriter json;

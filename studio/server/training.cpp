@@ -32,6 +32,13 @@ std::vector<std::string> buttons_of(const Model& model) {
   return buttons;
 }
 
+/// A value that the source gave; 0 if it gave none.
+double value_of(const recordings::SessionStatistics& statistics, std::string_view name) {
+  const auto& values = statistics.values;
+  const auto found = std::find_if(values.begin(), values.end(), [&](const auto& value) { return value.first == name; });
+  return found == values.end() ? 0 : found->second;
+}
+
 std::string ended_text(const std::string& shown, const Result<session::RecordOutcome>& outcome) {
   output::JsonWriter json;
   json.begin_object().member("path", std::string_view(shown)).key("errors");
@@ -49,8 +56,8 @@ std::string ended_text(const std::string& shown, const Result<session::RecordOut
         .member("severed", s.severed)
         .member("tick_time_p50_s", s.tick_time_p50)
         .member("tick_time_p99_s", s.tick_time_p99)
-        .member("input_age_p50_s", s.input_age_p50)
-        .member("input_age_p99_s", s.input_age_p99);
+        .member("pose_wait_p50_s", value_of(s, "device_pose_wait_p50_s"))
+        .member("pose_wait_p99_s", value_of(s, "device_pose_wait_p99_s"));
   }
   return event_text("train_ended", json.end_object().text());
 }

@@ -146,8 +146,8 @@ std::string chapter_list(const std::vector<Caption>& captions) {
   return box("chpl", list.text);
 }
 
-/// How the colours of H.264 are coded: primaries and curve of BT.709, the matrix of BT.601, not the full range.
-std::string colour_box() { return box("colr", Bytes().raw("nclx").u16(1).u16(1).u16(6).u8(0).text); }
+/// How the colours of H.264 are coded: primaries, curve and matrix of BT.709, not the full range.
+std::string colour_box() { return box("colr", Bytes().raw("nclx").u16(1).u16(1).u16(1).u8(0).text); }
 
 /// The boxes with what says how colours are coded, in each video track.
 std::string with_colours(const std::string& bytes) {

@@ -48,6 +48,21 @@ std::size_t format_asked_for(const std::string& path) {
   return i;
 }
 
+/// The encoder codes colours with the matrix of BT.601, players of high definition expect that of BT.709. What this
+/// matrix makes of a colour (blue, green, red) is coded by the one as the colour itself by the other. Only colours
+/// purer than tissue, steel and text leave the range.
+const cv::Matx33f& coded_as_bt709() {
+  static const cv::Matx33f matrix = [] {
+    // Rows: Y, Cb, Cr of blue, green, red.
+    const auto coding = [](float red, float blue) {
+      const float green = 1 - red - blue, b = 2 * (1 - blue), r = 2 * (1 - red);
+      return cv::Matx33f(blue, green, red, (1 - blue) / b, -green / b, -red / b, -blue / r, -green / r, (1 - red) / r);
+    };
+    return coding(0.299f, 0.114f).inv() * coding(0.2126f, 0.0722f);
+  }();
+  return matrix;
+}
+
 /// The picture of frame `index` in a folder, from 1.
 fs::path picture_path(const std::string& folder, std::int64_t index) {
   char name[32];
@@ -156,6 +171,7 @@ Result<Done> VideoWriter::Parts::put(const render::Frame& frame) {
   try {
     const cv::Mat rgb(frame.height, frame.width, CV_8UC3, const_cast<std::uint8_t*>(frame.rgb.data()));
     cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+    if (format.backend == cv::CAP_FFMPEG) cv::transform(bgr, bgr, coded_as_bt709());
     writer.write(bgr);
   } catch (const cv::Exception& problem) {
     return Error{path, "a frame could not be written: " + problem.err, ""};

@@ -1,6 +1,6 @@
-import { useState } from "preact/hooks";
+import { useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
-import { Problems, Section, ShownCommand } from "./parts";
+import { Problems, Section, ShownCommand, Working } from "./parts";
 import { firstOf, type Player } from "./player";
 import type { ComparisonResult, Listing } from "./protocol";
 import { command, seconds, short } from "./text";
@@ -15,7 +15,8 @@ export function Compare({ connection, player, listing, comparison, onComparison,
   onBeside: (path: string | undefined) => Promise<void>;
 }) {
   const [error, setError] = useState<Error | null>(null);
-  const [isBusy, setBusy] = useState(false);
+  const [progress, setProgress] = useState<[number, number] | null>(null);
+  const running = useRef<AbortController | null>(null);
   const [aligned, setAligned] = useState(player.path ? "path" : "");
   const first = player.tracks.get(0)!.session, second = player.tracks.get(1)?.session;
 
@@ -30,16 +31,18 @@ export function Compare({ connection, player, listing, comparison, onComparison,
   };
   const compare = async () => {
     setError(null);
-    setBusy(true);
+    setProgress([0, 1]);
+    running.current = new AbortController();
     try {
-      const result = await connection.call<ComparisonResult>("session.compare", { expert: first.path, trainee: second!.path });
+      const result = await connection.call<ComparisonResult>("session.compare", { expert: first.path, trainee: second!.path },
+        { progress: (done, total) => setProgress([done, total]), signal: running.current.signal });
       onComparison(result);
       return result;
     } catch (failure) {
       setError(failure as Error);
       return null;
     } finally {
-      setBusy(false);
+      setProgress(null);
     }
   };
   const alignAlong = async () => {
@@ -67,7 +70,7 @@ export function Compare({ connection, player, listing, comparison, onComparison,
             <div class="buttons" role="group" aria-label="Align at">
               <button type="button" aria-pressed={aligned === "contact begins"} disabled={!can("contact begins")} onClick={() => align("contact begins")}>first contact</button>
               <button type="button" aria-pressed={aligned === "cut"} disabled={!can("cut")} onClick={() => align("cut")}>first cut</button>
-              <button type="button" aria-pressed={aligned === "path"} disabled={isBusy} onClick={() => void alignAlong()}>path</button>
+              <button type="button" aria-pressed={aligned === "path"} disabled={progress !== null} onClick={() => void alignAlong()}>path</button>
             </div>
             <label class="field">
               <span>by hand: the one beside is ahead by [s]</span>
@@ -76,7 +79,8 @@ export function Compare({ connection, player, listing, comparison, onComparison,
                 player.setOffset(Number(e.currentTarget.value) || 0);
               }} />
             </label>
-            <button type="button" class="main" disabled={isBusy} onClick={() => void compare()}>{isBusy ? "comparing…" : "Compare"}</button>
+            {progress ? <Working what="comparing" done={progress[0]} total={progress[1]} onCancel={() => running.current?.abort()} />
+              : <button type="button" class="main" onClick={() => void compare()}>Compare</button>}
             <ShownCommand text={command("compare", first.path, second.path, "-o", "report")} />
           </>
         )}

@@ -178,8 +178,8 @@ export interface EndedTraining {
   severed?: number;
   tick_time_p50_s?: number;
   tick_time_p99_s?: number;
-  input_age_p50_s?: number;
-  input_age_p99_s?: number;
+  pose_wait_p50_s?: number; // from when a pose was sent to the tick that took it
+  pose_wait_p99_s?: number;
 }
 
 export interface OrganTriangles {

@@ -280,10 +280,12 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
   const [error, setError] = useState<Error | null>(null);
 
   const compare = async () => {
-    setError(null), setComparison(null), setProgress([0, 1]);
+    const progress = (done: number, total: number) => setProgress([done, total]);
+    setError(null), setComparison(null), setVerdict(null), progress(0, 1);
     try {
-      setVerdict(await connection.call("session.verify", { path: ended.path }, { progress: (done, total) => setProgress([done, total]) }));
-      if (expert) setComparison(await connection.call<ComparisonResult>("session.compare", { expert, trainee: ended.path }));
+      setVerdict(await connection.call("session.verify", { path: ended.path }, { progress }));
+      progress(0, 1);
+      if (expert) setComparison(await connection.call<ComparisonResult>("session.compare", { expert, trainee: ended.path }, { progress }));
     } catch (failure) {
       setError(failure as Error);
     }
@@ -304,7 +306,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
             ["late ticks", String(ended.late_ticks)],
             ["behind the clock", behind(ended.slip_s ?? 0, ended.slip_max_s ?? 0)],
             ["tick p50, p99", `${(1e3 * (ended.tick_time_p50_s ?? 0)).toFixed(2)}, ${(1e3 * (ended.tick_time_p99_s ?? 0)).toFixed(2)} ms`],
-            ["hand to tick p50, p99", `${(1e3 * (ended.input_age_p50_s ?? 0)).toFixed(1)}, ${(1e3 * (ended.input_age_p99_s ?? 0)).toFixed(1)} ms`],
+            ["hand to tick p50, p99", `${(1e3 * (ended.pose_wait_p50_s ?? 0)).toFixed(1)}, ${(1e3 * (ended.pose_wait_p99_s ?? 0)).toFixed(1)} ms`],
           ]} />
         )}
         <button type="button" onClick={onAgain}>Train again</button>

@@ -212,6 +212,25 @@ TEST_F(DeviceSession, ASampleFromThePastIsNotBelievedButANewConnectionMayHaveAno
   EXPECT_EQ(values.at(1), (recordings::NamedValue{"device_samples_refused", 1}));
 }
 
+/// The age of the input grows while a hand rests; how long its poses waited does not.
+TEST_F(DeviceSession, ItCountsHowLongPosesWaitForTheirTick) {
+  const auto wait = [&](std::size_t i) { return source_->statistics().at(i); };
+  for (int i = 0; i < 50; ++i) tell(kHome), now_ += kTick;  // the session has not begun
+  hold(kHome, 96);                                          // the first one begins it
+  for (int i = 0; i < 5; ++i) {
+    devices::DeviceReport late = report(kHome);
+    late.arrival -= 0.7 * kTick;
+    device_->waiting.push_back(late);
+    tick();
+  }
+  be_silent(300);
+  EXPECT_GT(source_->input_age(), 0.2);
+  EXPECT_EQ(wait(6).first, "device_pose_wait_p50_s");
+  EXPECT_LT(wait(6).second, 0.2e-3);
+  EXPECT_EQ(wait(7).first, "device_pose_wait_p99_s");
+  EXPECT_NEAR(wait(7).second, 0.75e-3, 0.06e-3);
+}
+
 TEST_F(DeviceSession, AFaultThatComesAndGoesIsNotedAFewTimesASecondAtMost) {
   hold(kHome, 100);
   for (int i = 0; i < 3000; ++i) {

@@ -192,7 +192,7 @@ TEST_F(MoreExports, AVideoSaysHowItsColoursAreCoded) {
       {"ffprobe", "-v", "error", "-select_streams", "v", "-show_entries",
        "stream=color_range,color_space,color_transfer,color_primaries", "-of", "default=noprint_wrappers=1", "a.mp4"},
       folder_.path());
-  for (const char* said : {"color_range=tv", "color_space=smpte170m", "color_transfer=bt709", "color_primaries=bt709"})
+  for (const char* said : {"color_range=tv", "color_space=bt709", "color_transfer=bt709", "color_primaries=bt709"})
     EXPECT_TRUE(holds(asked.out, said)) << asked.out;
   // It is true: decoded as it says, the picture has the colours that were drawn.
   ASSERT_EQ(export_to("drawn/", {kExpert}, {"--to-s", "0.2"}).code, 0);
@@ -205,13 +205,16 @@ TEST_F(MoreExports, AVideoSaysHowItsColoursAreCoded) {
   };
   const render::Frame drawn = picture("drawn/000001.png");
   const auto error = [&](const render::Frame& frame) {
-    double sum = 0;
-    for (std::size_t i = 0; i < drawn.rgb.size(); ++i) sum += std::abs(double(drawn.rgb[i]) - double(frame.rgb[i]));
-    return sum / double(drawn.rgb.size());
+    double sum = 0, count = 0;  // of the tissue: grey is the same with every matrix
+    for (std::size_t i = 0; i < drawn.rgb.size(); i += 3)
+      if (drawn.rgb[i] > drawn.rgb[i + 1] + 40)
+        for (std::size_t c = i; c < i + 3; ++c, ++count) sum += std::abs(double(drawn.rgb[c]) - double(frame.rgb[c]));
+    EXPECT_GT(count, 1000);
+    return sum / count;
   };
   const double as_said = error(decode({}, "said.png")),
-               otherwise = error(decode({"-vf", "scale=in_color_matrix=bt709:out_color_matrix=bt709"}, "other.png"));
-  EXPECT_LT(as_said, 0.8 * otherwise) << as_said << " " << otherwise;
+               otherwise = error(decode({"-vf", "scale=in_color_matrix=bt601:out_color_matrix=bt601"}, "other.png"));
+  EXPECT_LT(as_said, 0.6 * otherwise) << as_said << " " << otherwise;
 }
 
 }  // namespace

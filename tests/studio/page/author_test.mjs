@@ -422,13 +422,14 @@ test("an organ is turned by its rings and sized by its cubes, and by its text", 
 
 test("a scene is tried at once, as it is on the screen, and nothing is kept", async () => {
   await page.click(".objects button:has-text('ball')");
-  const files = readdirSync(folder).sort();
+  const files = readdirSync(folder).sort(), organs = (await scene()).organs.length;
+  assert.equal(organs, 2);
   const started = Date.now();
   await button("Try it").click();
   await page.waitForSelector(".view.running .force-bar");
   const box = await page.locator(".view canvas").boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + 60);
-  console.log(`author: from "Try it" to a scene in the hand ${Date.now() - started} ms`);
+  console.log(`author: from "Try it" to a scene of ${organs} organs in the hand ${Date.now() - started} ms`);
   for (let i = 0; i < 40; ++i) await page.mouse.move(box.x + box.width / 2, box.y + 60 + 5 * i);
   await page.waitForFunction(() => Number.parseFloat(document.querySelector(".force-bar output").textContent) > 0.1);
   await picture(page, "author-try");

@@ -138,7 +138,7 @@ test("the session verifies to the bit, and is compared at once", async () => {
   const info = JSON.parse(ctpm(folder, "info", "mine.ctpm", "--json").out);
   assert.equal(info.metadata.source, "studio");
   assert.ok(info.severed > 0);
-  console.log(`training: pose to tick p50 ${(1e3 * info.input_age_p50_s).toFixed(1)} ms, p99 ${(1e3 * info.input_age_p99_s).toFixed(1)} ms`);
+  console.log(`training: pose to tick p50 ${(1e3 * info.values.device_pose_wait_p50_s).toFixed(1)} ms, p99 ${(1e3 * info.values.device_pose_wait_p99_s).toFixed(1)} ms; between poses at most ${(1e3 * info.values.device_longest_gap_s).toFixed(0)} ms`);
 });
 
 test("a worst moment leads to the timeline", async () => {

@@ -230,6 +230,17 @@ INSTANTIATE_TEST_SUITE_P(Paper, EveryModel,
                          ::testing::Values(network::Structure::mass_spring, network::Structure::angle_mass_spring,
                                            network::Structure::tpm, network::Structure::ctpm));
 
+TEST(Paper, AModelThatMovesByRoundingAloneIsAtRest) {
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(kScenes + "/paper/convergence-liver.json");
+  ASSERT_TRUE(scene) << to_string(scene.errors().front());
+  Model weightless = scene->built.model;
+  weightless.gravity = {};
+  double rounding = 1e-17;
+  const Result<double> way = paper::at_rest(weightless, "block", [&](const State&) { return rounding = -rounding; });
+  ASSERT_TRUE(way) << to_string(way.errors().front());
+  EXPECT_NEAR(*way, 0, 1e-15);
+}
+
 TEST(Paper, WhatTensionDoesToTheUnloadedLiverIsNoSag) {
   Result<loading::LoadedScene> scene = loading::load_whole_scene(kScenes + "/liver.json");
   ASSERT_TRUE(scene) << to_string(scene.errors().front());
@@ -245,7 +256,8 @@ TEST(Paper, WhatTensionDoesToTheUnloadedLiverIsNoSag) {
     EXPECT_GT(slack->fillings[i].sag, 0);
     EXPECT_NEAR(tense->fillings[i].sag / slack->fillings[i].sag, 1, 0.25) << tense->fillings[i].radius;
   }
-  EXPECT_NE(tense->fillings[0].held, tense->fillings[1].held) << "their lattices do not lie in each other";
+  for (std::size_t i = 1; i < 3; ++i) EXPECT_NEAR(tense->fillings[i].held, tense->fillings[0].held, 1e-6);
+  EXPECT_GT(tense->order(), 0.5) << "the same solid on the same foot";
 }
 
 TEST(Paper, ARefinementKnowsItsOrderAndItsLimit) {

@@ -60,6 +60,18 @@ TEST(Overlay, ACaptionHasTheRoomBesideThePlot) {
   }
 }
 
+TEST(Overlay, ACaptionOfAStillThatIsTooLongForALineHasTwo) {
+  render::OverlayData data = full_data();
+  data.caption = "3.10 s  tissue damage: deeper than 12 mm", data.level = render::OverlayLevel::caption;
+  render::Overlay overlay(320, 240, 1.4);  // a picture of a contact sheet
+  const auto texts = overlay.layout(data);
+  ASSERT_EQ(texts.size(), 2u);
+  EXPECT_EQ(texts[0].text + " " + texts[1].text, data.caption);
+  EXPECT_LE(texts[0].box.y + texts[0].box.height, texts[1].box.y);
+  EXPECT_LE(texts[1].box.y + texts[1].box.height, 240);
+  for (const render::PlacedText& text : texts) EXPECT_TRUE(text.box.x >= 0 && text.box.x + text.box.width <= 320);
+}
+
 TEST(Overlay, TimeThatTheSessionLostIsShown) {
   render::Overlay overlay(1280, 720);
   render::OverlayData data = full_data();

@@ -13,6 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::Serving;
 using testing::SocketClient;
+using testing::stopped;
 using testing::value_at;
 
 constexpr int kStage = 3;
@@ -107,19 +108,6 @@ TEST_F(AuthorTest, TheScatterIsThatOfTheCommand) {
     for (const auto& row : answer["result"][kind]) told.push_back(100 * row["scatter"].get<double>());
   ASSERT_EQ(printed.size(), told.size());
   for (std::size_t i = 0; i < printed.size(); ++i) EXPECT_NEAR(printed[i], told[i], 1e-9 * printed[i]);
-}
-
-/// Begins a call and ends it at its first progress. Returns its answer.
-nlohmann::json stopped(SocketClient& client, const std::string& call, const nlohmann::json& parameters) {
-  client.send({{"id", 77}, {"call", call}, {"params", parameters}});
-  for (;;) {
-    const auto message = client.receive();
-    if (!message.is_text) continue;
-    const nlohmann::json answer = nlohmann::json::parse(message.bytes);
-    if (answer.value("id", 0) != 77) continue;
-    if (!answer.contains("progress")) return answer;
-    client.send({{"cancel", 77}});
-  }
 }
 
 TEST_F(AuthorTest, WhatTakesLongCanBeStoppedAndLeavesNothing) {

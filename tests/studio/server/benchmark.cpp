@@ -1,7 +1,6 @@
 // Measures the studio's server as a page sees it, without a browser:
-//   ctpm_studio_benchmark review FOLDER SESSION [WAIT_S]   opening, and seeks all over the session, at once and after a
-//   wait ctpm_studio_benchmark train FOLDER SCENE               late ticks with more and more pages, one of which stops
-//   reading
+//   ctpm_studio_benchmark review FOLDER SESSION [WAIT_S]    opening, and seeks all over the session, at once and later
+//   ctpm_studio_benchmark train FOLDER SCENE [ROUNDS]       what pages cost the thread that ticks: train_benchmark.h
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <random>
 
 #include "tests/studio/server/serving.h"
+#include "tests/studio/server/train_benchmark.h"
 
 namespace ctpm {
 namespace {
@@ -86,72 +86,14 @@ int review(const std::string& folder, const std::string& session, double wait_s)
   return 0;
 }
 
-/// Trains for some seconds beside further pages, and prints the late ticks. False: the scene cannot be loaded.
-bool train_beside(const Serving& serving, const std::string& scene, int pages, bool one_stops, double seconds) {
-  SocketClient client(serving);
-  const nlohmann::json begun = client.call("train.begin", {{"scene", scene}, {"stage", 2}});
-  if (!begun.contains("result")) return std::printf("%s\n", begun.dump().c_str()), false;
-  const nlohmann::json& view = begun["result"]["view"];
-  const double x = 0.5 * (view["least"][0].get<double>() + view["most"][0].get<double>());
-  const double y = 0.5 * (view["least"][1].get<double>() + view["most"][1].get<double>());
-  const double top = view["most"][2].get<double>() + 0.03;
-  std::atomic<bool> ends{false};
-  std::vector<std::thread> others;
-  for (int i = 0; i < pages; ++i)
-    others.emplace_back([&, i] {
-      SocketClient page(serving);
-      while (!ends) {
-        page.send({{"id", 1}, {"call", "folder.list"}, {"params", nlohmann::json::object()}});
-        if (!(one_stops && i == 0)) page.receive();
-        std::this_thread::sleep_for(std::chrono::milliseconds(16));
-      }
-    });
-  std::thread reader([&] {
-    try {
-      while (true) {
-        const auto message = client.receive();
-        if (message.is_text && message.bytes.find("train_ended") != std::string::npos) {
-          const nlohmann::json content = nlohmann::json::parse(message.bytes)["content"];
-          std::printf("pages %d%s: %lld ticks, %lld late\n", pages, one_stops ? ", one stops reading" : "",
-                      (long long)content["ticks"], (long long)content["late_ticks"]);
-          return;
-        }
-      }
-    } catch (const std::exception& error) {
-      std::printf("the page was disconnected: %s\n", error.what());
-    }
-  });
-  const Clock::time_point begin = Clock::now();
-  for (int i = 0; ms_since(begin) < 1e3 * seconds; ++i) {
-    const double z = top - 0.02 * (1 - std::cos(0.01 * i));
-    client.send({{"hand",
-                  {{"position", {x, y, z}},
-                   {"orientation", {1, 0, 0, 0}},
-                   {"buttons", 1},
-                   {"time_s", 1 + 1e-3 * ms_since(begin)}}}});
-    std::this_thread::sleep_for(std::chrono::milliseconds(8));
-  }
-  client.send({{"id", 9}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
-  reader.join();
-  ends = true;
-  for (std::thread& other : others) other.join();
-  return true;
-}
-
-int train(const std::string& folder, const std::string& scene) {
-  const Serving serving(folder);
-  for (const auto& [pages, one_stops] : {std::pair{0, false}, {1, false}, {4, false}, {4, true}})
-    if (!train_beside(serving, scene, pages, one_stops, 8)) return 2;
-  return 0;
-}
-
 }  // namespace
 }  // namespace ctpm
 
 int main(int argc, char** argv) {
   if (argc >= 4 && argc <= 5 && std::string(argv[1]) == "review")
     return ctpm::review(argv[2], argv[3], argc == 5 ? std::atof(argv[4]) : 20);
-  if (argc == 4 && std::string(argv[1]) == "train") return ctpm::train(argv[2], argv[3]);
-  std::fprintf(stderr, "usage: ctpm_studio_benchmark review FOLDER SESSION [WAIT_S] | train FOLDER SCENE\n");
+  if (argc >= 4 && argc <= 5 && std::string(argv[1]) == "train")
+    return ctpm::benchmark_training(argv[2], argv[3], argc == 5 ? std::atoi(argv[4]) : 20);
+  std::fprintf(stderr, "usage: ctpm_studio_benchmark review FOLDER SESSION [WAIT_S] | train FOLDER SCENE [ROUNDS]\n");
   return 2;
 }

@@ -10,6 +10,7 @@
 #include "core/contact/drawn_surfaces.h"
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
+#include "studio/compare/compare_files.h"
 #include "studio/film/reel.h"
 #include "studio/film/session_film.h"
 #include "studio/render/renderer.h"
@@ -205,6 +206,24 @@ TEST_F(Reviewing, TimelineInfoAndComparisonAreThoseOfTheCommands) {
   const nlohmann::json verdict = client.call("session.verify", {{"path", kCut}})["result"];
   const testing::ProgramOutcome verify = testing::run_ctpm({"verify", kCut}, folder_.path());
   EXPECT_NE(verify.out.find(verdict["text"].get<std::string>()), std::string::npos) << verify.out;
+}
+
+TEST_F(Reviewing, AComparisonSaysHowFarItIsAndCanBeStopped) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  nlohmann::json at;
+  const nlohmann::json answer = testing::stopped(client, "session.compare", {{"expert", kCut}, {"trainee", kCut}}, &at);
+  EXPECT_NE(answer["errors"].dump().find("stopped"), std::string::npos) << answer;
+  EXPECT_EQ(at["total"], 2 * recordings::SessionReader::open(file(kCut))->tick_count());
+  EXPECT_LT(at["done"], at["total"]);
+
+  std::vector<std::int64_t> told;
+  compare::CompareFilesOptions options;
+  options.progress = [&](std::int64_t done, std::int64_t) { told.push_back(done); };
+  ASSERT_TRUE(compare::compare_files(*compare::open_files(file(kCut), file(kCut)), options));
+  EXPECT_GT(told.size(), 1000u);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_EQ(told.back(), at["total"]);
 }
 
 TEST_F(Reviewing, NotesLieBesideTheSessionWhichNeverChanges) {

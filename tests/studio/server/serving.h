@@ -130,6 +130,7 @@ class SocketClient {
     namespace beast = boost::beast;
     beast::get_lowest_layer(socket_).connect(
         boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4::loopback(), std::uint16_t(serving.port())));
+    beast::get_lowest_layer(socket_).socket().set_option(boost::asio::ip::tcp::no_delay(true));  // as browsers do
     socket_.set_option(beast::websocket::stream_base::decorator([&](beast::websocket::request_type& request) {
       request.set(beast::http::field::sec_websocket_protocol, "ctpm.studio.1, token." + serving.token());
       request.set(beast::http::field::origin, serving.origin());
@@ -200,6 +201,21 @@ class SocketClient {
   boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
   int last_ = 0;
 };
+
+/// Begins a call and ends it at its first progress, which is in `at` if given. Returns its answer.
+inline nlohmann::json stopped(SocketClient& client, const std::string& call, const nlohmann::json& parameters,
+                              nlohmann::json* at = nullptr) {
+  client.send({{"id", 77}, {"call", call}, {"params", parameters}});
+  for (;;) {
+    const auto message = client.receive();
+    if (!message.is_text) continue;
+    const nlohmann::json answer = nlohmann::json::parse(message.bytes);
+    if (answer.value("id", 0) != 77) continue;
+    if (!answer.contains("progress")) return answer;
+    if (at) *at = answer["progress"];
+    client.send({{"cancel", 77}});
+  }
+}
 
 /// A value at a byte offset of a message.
 template <class T>

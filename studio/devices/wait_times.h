@@ -1,0 +1,34 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace ctpm::devices {
+
+/// Counts how long samples waited until a tick took them, in bins of 0.1 ms; adding allocates nothing.
+class WaitTimes {
+ public:
+  static constexpr double kBin = 1e-4, kMost = 1;  // [s]; longer waits count as kMost
+
+  void add(double wait_s) {
+    const double bin = std::floor(std::clamp(wait_s, 0.0, kMost) / kBin);
+    ++bins_[std::min(std::size_t(bin), bins_.size() - 1)], ++count_;
+  }
+
+  /// The end of the bin in which the smallest wait lies that a `share` of all do not exceed [s]; 0: there was none.
+  double at(double share) const {
+    const auto rank = std::max<std::int64_t>(1, std::int64_t(std::ceil(share * double(count_))));
+    std::int64_t seen = 0;
+    for (std::size_t i = 0; i < bins_.size(); ++i)
+      if ((seen += bins_[i]) >= rank) return kBin * double(i + 1);
+    return 0;
+  }
+
+ private:
+  std::array<std::int32_t, std::size_t(kMost / kBin)> bins_{};
+  std::int64_t count_ = 0;
+};
+
+}  // namespace ctpm::devices

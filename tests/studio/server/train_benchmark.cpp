@@ -1,0 +1,181 @@
+#include "tests/studio/server/train_benchmark.h"
+
+#include <sys/resource.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <optional>
+
+#include "studio/cohort/statistics.h"
+#include "studio/devices/open_device.h"
+#include "studio/loading/loaded_scene.h"
+#include "studio/server/page_hand.h"
+#include "studio/session/record_session.h"
+#include "studio/session/unkept_session.h"
+#include "tests/studio/server/serving.h"
+
+namespace ctpm {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using testing::Serving;
+using testing::SocketClient;
+
+constexpr double kRun = 3;  // [s]
+
+struct Variant {
+  const char* name;
+  int pages;       ///< that are connected; 0: there is no studio
+  bool one_stops;  ///< reading
+};
+constexpr std::array kVariants{Variant{"no studio", 0, false}, Variant{"the page that leads", 1, false},
+                               Variant{"and four more", 5, false}, Variant{"one of which stops reading", 5, true}};
+constexpr std::size_t kBase = 1;
+
+/// What a run measured.
+enum Measure { late_share, tick_p50, tick_p99, wait_p50, wait_p99, kMeasures };
+constexpr std::array kNames{"late ticks, % of all", "tick p50, ms", "tick p99, ms", "pose to tick p50, ms",
+                            "pose to tick p99, ms"};
+using Run = std::array<double, kMeasures>;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// Moves a hand for kRun above the box of the scene's organs and down into them.
+void lead(const Vec3& top, const std::function<void(Vec3, double)>& move) {
+  const Clock::time_point begin = Clock::now();
+  for (int i = 0; seconds_since(begin) < kRun; ++i) {
+    move(top + Vec3{0, 0, 0.03 - 0.02 * (1 - std::cos(0.01 * i))}, 1 + seconds_since(begin));
+    std::this_thread::sleep_until(begin + std::chrono::milliseconds(8 * (i + 1)));
+  }
+}
+
+/// The same hand, without server, pages and pictures.
+std::optional<Run> run_alone(const recordings::SessionStart& start, const Vec3& top) {
+  devices::DeviceRequest request;
+  request.buttons = {"0=" + start.model.tools[0].name};
+  request.timeout_s = 1e5;
+  auto made = std::make_unique<server::PageHand>();
+  server::PageHand& hand = *made;
+  auto followed = devices::follow_device(request, std::move(made), start.model);
+  if (!followed) return std::nullopt;
+  std::atomic<bool> ends{false};
+  std::optional<Run> run;
+  std::thread ticks([&] {
+    setpriority(PRIO_PROCESS, id_t(gettid()), -15);  // as a training does
+    const auto should_stop = [&] { return ends.load(); };
+    if (!followed->source->wait_for_first_pose(should_stop)) return;
+    session::RunOptions options;
+    options.threads = session::threads_for(start.model), options.should_stop = should_stop;
+    const session::UnkeptSession unkept;
+    const auto outcome = session::record_session(start, *followed->source, unkept.file(), false, options);
+    if (!outcome) return;
+    const recordings::SessionStatistics& s = outcome->statistics;
+    run = Run{1e2 * double(outcome->run.late_ticks) / double(outcome->run.ticks), 1e3 * s.tick_time_p50,
+              1e3 * s.tick_time_p99};
+    for (const auto& [name, value] : s.values) {
+      if (name == "device_pose_wait_p50_s") (*run)[wait_p50] = 1e3 * value;
+      if (name == "device_pose_wait_p99_s") (*run)[wait_p99] = 1e3 * value;
+    }
+  });
+  lead(top, [&](Vec3 at, double time) { hand.move({{at, Quat{1, 0, 0, 0}}, 1}, time); });
+  ends = true;
+  ticks.join();
+  return run;
+}
+
+/// A page that asks 60 times a second, and reads the answers, or does not.
+void ask(const Serving& serving, bool reads, const std::atomic<bool>& ends) {
+  SocketClient page(serving);
+  while (!ends) {
+    page.send({{"id", 1}, {"call", "folder.list"}, {"params", nlohmann::json::object()}});
+    if (reads) page.receive();
+    std::this_thread::sleep_for(std::chrono::milliseconds(16));
+  }
+}
+
+/// What the event at the end of a training says; none if it does not come.
+std::optional<Run> ended(SocketClient& page) try {
+  for (;;) {
+    const auto message = page.receive();
+    if (!message.is_text || message.bytes.find("train_ended") == std::string::npos) continue;
+    const nlohmann::json end = nlohmann::json::parse(message.bytes)["content"];
+    return Run{1e2 * double(end["late_ticks"]) / double(end["ticks"]), 1e3 * double(end["tick_time_p50_s"]),
+               1e3 * double(end["tick_time_p99_s"]), 1e3 * double(end["pose_wait_p50_s"]),
+               1e3 * double(end["pose_wait_p99_s"])};
+  }
+} catch (const std::exception&) {
+  return std::nullopt;
+}
+
+std::optional<Run> run_beside(const Serving& serving, const std::string& scene, const Variant& variant,
+                              const Vec3& top) {
+  SocketClient client(serving);
+  if (!client.call("train.begin", {{"scene", scene}, {"stage", 2}}).contains("result")) return std::nullopt;
+  std::atomic<bool> ends{false};
+  std::vector<std::thread> others;
+  for (int i = 1; i < variant.pages; ++i)
+    others.emplace_back([&, i] { ask(serving, i > 1 || !variant.one_stops, ends); });
+  std::optional<Run> run;
+  std::thread reader([&] { run = ended(client); });
+  lead(top, [&](Vec3 at, double time) {
+    client.send(
+        {{"hand",
+          {{"position", {at.x, at.y, at.z}}, {"orientation", {1, 0, 0, 0}}, {"buttons", 1}, {"time_s", time}}}});
+  });
+  client.send({{"id", 9}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
+  reader.join();
+  ends = true;
+  for (std::thread& other : others) other.join();
+  return run;
+}
+
+void print(const std::array<std::vector<Run>, kVariants.size()>& runs) {
+  for (int m = 0; m < kMeasures; ++m) {
+    std::printf("%s\n", kNames[std::size_t(m)]);
+    double base = 0;
+    for (const Run& run : runs[kBase]) base += run[std::size_t(m)] / double(runs[kBase].size());
+    for (std::size_t v = 0; v < kVariants.size(); ++v) {
+      std::vector<double> differences;
+      double mean = 0;
+      for (std::size_t i = 0; i < runs[v].size(); ++i) {
+        differences.push_back(runs[v][i][std::size_t(m)] - runs[kBase][i][std::size_t(m)]);
+        mean += runs[v][i][std::size_t(m)] / double(runs[v].size());
+      }
+      const auto interval = cohort::interval_of_mean(differences, {});
+      std::printf("  %-28s mean %.4f, %+.4f [%+.4f, %+.4f], in %% of the base %+.1f [%+.1f, %+.1f]\n",
+                  kVariants[v].name, mean, mean - base, interval->low, interval->high, 1e2 * (mean - base) / base,
+                  1e2 * interval->low / base, 1e2 * interval->high / base);
+    }
+  }
+}
+
+}  // namespace
+
+int benchmark_training(const std::string& folder, const std::string& scene, int rounds) {
+  const auto loaded = loading::load_whole_scene(folder + "/" + scene, {}, {});
+  if (!loaded || rounds < 2) return std::fprintf(stderr, "no such scene, or fewer than 2 rounds\n"), 2;
+  const recordings::SessionStart start = session::start_session(*loaded);
+  Vec3 least{INFINITY, INFINITY, INFINITY}, most = -1.0 * least;
+  for (std::size_t i = 0; i < start.initial_state.position.size(); ++i) {
+    const Vec3 at = start.initial_state.position[i];
+    least = {std::min(least.x, at.x), std::min(least.y, at.y), std::min(least.z, at.z)};
+    most = {std::max(most.x, at.x), std::max(most.y, at.y), std::max(most.z, at.z)};
+  }
+  const Vec3 top{0.5 * (least.x + most.x), 0.5 * (least.y + most.y), most.z};
+  const Serving serving(folder);
+  std::array<std::vector<Run>, kVariants.size()> runs;
+  for (int round = 0; round < rounds; ++round)
+    for (std::size_t i = 0; i < kVariants.size(); ++i) {
+      const std::size_t v = (i + std::size_t(round)) % kVariants.size();
+      const auto run = kVariants[v].pages == 0 ? run_alone(start, top) : run_beside(serving, scene, kVariants[v], top);
+      if (!run) return std::fprintf(stderr, "%s: the training did not end as it should\n", kVariants[v].name), 2;
+      runs[v].push_back(*run);
+    }
+  std::printf("%s, %d rounds of %.0f s each\n", scene.c_str(), rounds, kRun);
+  print(runs);
+  return 0;
+}
+
+}  // namespace ctpm
