@@ -29,11 +29,12 @@ Result<std::vector<Reel>> reels_of(const std::vector<recordings::SessionReader*>
                                    const std::vector<StillsRequest>& requests, const ExportOptions& options) {
   std::vector<Reel> reels;
   for (std::size_t i = 0; i < sessions.size(); ++i) {
-    Result<Reel> reel = make_reel(*sessions[i], ticks_of(requests[i].ticks), options.size, options);
+    Result<Reel> reel = make_reel(*sessions[i], ticks_of(requests[i].ticks), options.size, options,
+                                  reels.empty() ? nullptr : reels.data(), Between::left_out);
     if (!reel) return reel.errors();
     reels.push_back(std::move(*reel));
   }
-  if (const Result<Done> alike = look_alike(reels, sessions); !alike) return alike.errors();
+  if (const Result<Done> alike = colour_alike(reels, sessions); !alike) return alike.errors();
   return reels;
 }
 
