@@ -106,8 +106,9 @@ Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>
   const int width = options.size.width / int(sessions.size());
   std::vector<Reel> reels;
   for (std::size_t i = 0; i < sessions.size(); ++i) {
-    Result<Reel> reel = make_reel(*sessions[i], ticks ? std::move((*ticks)[i]) : FrameTicks{},
-                                  {width, options.size.height}, options, reels.empty() ? nullptr : reels.data());
+    Result<Reel> reel =
+        make_reel(*sessions[i], ticks ? std::move((*ticks)[i]) : FrameTicks{}, {width, options.size.height}, options,
+                  reels.empty() ? std::nullopt : std::optional(seen_in(reels[0])));
     if (reel)
       reels.push_back(std::move(*reel));
     else

@@ -35,13 +35,12 @@ Result<double> range_of(recordings::SessionReader& session, render::ElementQuant
   return largest;
 }
 
-/// As the reel beside it is seen, if that is of the same scene.
+/// As the first one is seen, if that is of the same scene.
 Result<views::Look> look_of(recordings::SessionReader& session, const SessionFilm& film, const render::SceneView& view,
-                            const render::PictureSize& size, const ExportOptions& options, const Reel* beside) {
-  if (beside != nullptr) {
-    const render::Bounds here = render::rest_bounds(view), there = render::rest_bounds(beside->renderer->scene());
-    if (here.min == there.min && here.max == there.max) return beside->look;
-  }
+                            const render::PictureSize& size, const ExportOptions& options,
+                            const std::optional<Seen>& first) {
+  const render::Bounds rest = render::rest_bounds(view);
+  if (first && first->rest.min == rest.min && first->rest.max == rest.max) return first->look;
   // The last keyframe of the session, so that a part is seen as the whole is; of a damaged one, that of the part.
   Result<recordings::Keyframe> late = session.keyframe_at_or_before(session.tick_count());
   if (!late) late = session.keyframe_at_or_before(film.range().to);
@@ -69,8 +68,10 @@ Result<Shot> Reel::shoot(std::int64_t frame) const {
   return shot;
 }
 
+Seen seen_in(const Reel& reel) { return {render::rest_bounds(reel.renderer->scene()), reel.look}; }
+
 Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, const render::PictureSize& size,
-                       const ExportOptions& options, const Reel* beside, Between between) {
+                       const ExportOptions& options, const std::optional<Seen>& first, Between between) {
   Reel reel;
   const Result<std::vector<Moment>> all = all_moments(session, ticks.range);
   if (!all) return all.errors();
@@ -80,7 +81,7 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
   reel.film = std::move(*film);
   const Model& model = reel.film->model();
   render::SceneView view = views::view_of(reel.film->scene(), model);
-  const Result<views::Look> look = look_of(session, *reel.film, view, size, options, beside);
+  const Result<views::Look> look = look_of(session, *reel.film, view, size, options, first);
   if (!look) return look.errors();
   reel.look = *look;
   if (options.strip) reel.strip_height = strip_height(size.height);
@@ -117,7 +118,7 @@ Result<double> full_scale_of(const std::vector<recordings::SessionReader*>& sess
   return largest > 0 ? render::round_up(largest / views::unit_of(quantity)) : 0.0;  // the legend's numbers are round
 }
 
-Result<Done> colour_alike(std::vector<Reel>& reels, const std::vector<recordings::SessionReader*>& sessions) {
+Result<Done> colour_alike(std::span<Reel> reels, const std::vector<recordings::SessionReader*>& sessions) {
   const render::DrawOptions& first = reels[0].look.draw;
   if (first.view != render::View::elements || first.full_scale > 0) return Done{};
   const Result<double> full_scale = full_scale_of(sessions, first.quantity);
