@@ -13,7 +13,7 @@ namespace {
 constexpr std::array<const char*, 7> kPalette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                               "#e69f00", "#56b4e9", "#4d4d4d"};
 
-constexpr double kLeft = 62, kRight = 14, kTop = 30, kBottom = 46, kLegendRow = 17, kEventRow = 16;
+constexpr double kLeft = 62, kRight = 14, kTop = 30, kBottom = 46, kLegendRow = 17, kLegendText = 28, kEventRow = 16;
 
 const char* colour(int index) { return kPalette[std::size_t(std::max(index, 0)) % kPalette.size()]; }
 
@@ -105,6 +105,23 @@ bool has_marks_only(const Series& series) { return series.stroke == Stroke::mark
 /// Whether the legend names it.
 bool is_listed(const Series& series) { return !series.name.empty() && !series.x.empty(); }
 
+/// Two, unless a name would be longer than its half in the letters of narrow pages.
+int legend_columns(const Plot& plot) {
+  constexpr double kLetter = 8;  // of 15 pixels, with some to spare
+  std::size_t longest = 0;
+  for (const Series& s : plot.series) longest = std::max(longest, is_listed(s) ? s.name.size() : 0);
+  for (const Band& band : plot.bands) longest = std::max(longest, band.name.size());
+  return kLegendText + kLetter * double(longest) > 0.5 * (plot.width - kLeft - kRight) ? 1 : 2;
+}
+
+int legend_rows(const Plot& plot) {
+  int entries = 0;
+  for (const Series& s : plot.series) entries += is_listed(s) ? 1 : 0;
+  for (const Band& band : plot.bands) entries += band.name.empty() ? 0 : 1;
+  const int columns = legend_columns(plot);
+  return (entries + columns - 1) / columns;
+}
+
 /// Draws one plot.
 struct Drawing {
   const Plot& plot;
@@ -188,11 +205,13 @@ struct Drawing {
     }
   }
 
-  /// Below the axes, in two columns.
+  /// Below the axes.
   void add_legend(const std::vector<const char*>& inks) {
     int entry = 0;
+    const int columns = legend_columns(plot);
     const auto place = [&] {
-      const double px = left + (entry % 2) * 0.5 * (right - left), py = bottom + 54 + kLegendRow * (entry / 2);
+      const double px = left + (entry % columns) * (right - left) / columns,
+                   py = bottom + 54 + kLegendRow * (entry / columns);
       ++entry;
       return std::pair{px, py};
     };
@@ -209,24 +228,17 @@ struct Drawing {
                number(py - 4) + "\" stroke=\"" + inks[i] + "\" stroke-width=\"2\"" +
                (s.stroke == Stroke::dashed ? " stroke-dasharray=\"6 4\"" : "") + "/>\n";
       if (s.stroke == Stroke::path) add_mark(px + 11, py - 4, 3, inks[i], true);
-      add_text(svg, px + 28, py, "start", "legend", s.name);
+      add_text(svg, px + kLegendText, py, "start", "legend", s.name);
     }
     for (const Band& band : plot.bands) {
       if (band.name.empty()) continue;
       const auto [px, py] = place();
       svg += "<rect x=\"" + number(px) + "\" y=\"" + number(py - 10) + "\" width=\"22\" height=\"11\" fill=\"" +
              colour(band.colour) + "\" fill-opacity=\"0.25\"/>\n";
-      add_text(svg, px + 28, py, "start", "legend", band.name);
+      add_text(svg, px + kLegendText, py, "start", "legend", band.name);
     }
   }
 };
-
-int legend_rows(const Plot& plot) {
-  int entries = 0;
-  for (const Series& s : plot.series) entries += is_listed(s) ? 1 : 0;
-  for (const Band& band : plot.bands) entries += band.name.empty() ? 0 : 1;
-  return (entries + 1) / 2;
-}
 
 }  // namespace
 
