@@ -14,6 +14,8 @@ constexpr std::array<const char*, 7> kPalette{"#0072b2", "#d55e00", "#009e73", "
                                               "#e69f00", "#56b4e9", "#4d4d4d"};
 
 constexpr double kLeft = 62, kRight = 14, kTop = 30, kBottom = 46, kLegendRow = 17, kLegendText = 28, kEventRow = 16;
+/// Of letters on narrow pages, where they are 15 pixels high, with some to spare.
+constexpr double kLetter = 8, kTitleLetter = 9.6;
 
 const char* colour(int index) { return kPalette[std::size_t(std::max(index, 0)) % kPalette.size()]; }
 
@@ -105,9 +107,8 @@ bool has_marks_only(const Series& series) { return series.stroke == Stroke::mark
 /// Whether the legend names it.
 bool is_listed(const Series& series) { return !series.name.empty() && !series.x.empty(); }
 
-/// Two, unless a name would be longer than its half in the letters of narrow pages.
+/// Two, unless a name would be longer than its half.
 int legend_columns(const Plot& plot) {
-  constexpr double kLetter = 8;  // of 15 pixels, with some to spare
   std::size_t longest = 0;
   for (const Series& s : plot.series) longest = std::max(longest, is_listed(s) ? s.name.size() : 0);
   for (const Band& band : plot.bands) longest = std::max(longest, band.name.size());
@@ -143,7 +144,9 @@ struct Drawing {
     add_text(svg, 0.5 * (left + right), bottom + 36, "middle", "title", plot.x_title);
     const std::string turn = " transform=\"rotate(-90 15 " + number(0.5 * (top + bottom)) + ")\"";
     add_text(svg, 15, 0.5 * (top + bottom), "middle", "title", plot.y_title, turn);
-    add_text(svg, left, 18, "start", "head", plot.title);
+    // A long title begins before the axis.
+    const double room = plot.width - kTitleLetter * double(plot.title.size());
+    add_text(svg, std::clamp(room, 4.0, left), 18, "start", "head", plot.title);
   }
 
   void add_bands() {

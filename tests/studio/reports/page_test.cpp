@@ -90,7 +90,8 @@ TEST_F(Page, OnASmallScreenNothingIsOutOfSight) {
   reports::Report report("A title that is longer than a telephone is wide, or nearly so", "below it");
   report.conclude(reports::ReportVerdict::missed, "One of two goals is missed.", {"The second one."});
   reports::Plot small = force_plot();
-  small.width = 360, small.series[0].name = "fails too often above", small.bands = {{"experts, one spread", 2, 3}};
+  small.title = "mean deviation of the aligned paths", small.width = 360,
+  small.series[0].name = "fails too often above", small.bands = {{"experts, one spread", 2, 3}};
   report.add_plots({force_plot(), small});
   reports::Table table;
   for (int i = 0; i < 14; ++i) table.columns.push_back({"key", "column number " + std::to_string(i)});
@@ -105,14 +106,15 @@ TEST_F(Page, OnASmallScreenNothingIsOutOfSight) {
       const inner = document.querySelector("iframe").contentDocument, cell = inner.querySelector(".verdict-cell"), first = inner.querySelector("td");
       document.body.dataset.wider = inner.documentElement.scrollWidth - inner.documentElement.clientWidth;
       document.body.dataset.hidden = [...inner.querySelectorAll("*")].filter(e => getComputedStyle(e).overflowX === "auto" && e.scrollWidth > e.clientWidth).length;
-      const boxes = svg => [...svg.querySelectorAll(".legend")].map(e => e.getBoundingClientRect());
+      const boxes = svg => [...svg.querySelectorAll(".legend, .head")].map(e => e.getBoundingClientRect());
       document.body.dataset.cut = [...inner.querySelectorAll("svg")].flatMap(svg => boxes(svg).filter((a, i, all) =>
         a.right > svg.getBoundingClientRect().right || all.some((b, j) => j > i && a.right > b.left && b.right > a.left && a.bottom > b.top + 2 && b.bottom > a.top + 2))).length;
       document.body.dataset.beside = Math.abs(cell.getBoundingClientRect().top - first.getBoundingClientRect().top) < 8;
     };
   </script>)");
   EXPECT_TRUE(holds(after, "data-wider=\"0\"")) << after.substr(0, 300);
-  EXPECT_TRUE(holds(after, "data-cut=\"0\"")) << "no name of a legend lies on another or ends outside its plot";
+  EXPECT_TRUE(holds(after, "data-cut=\"0\""))
+      << "no name of a legend lies on another, and no title ends outside its plot";
   EXPECT_TRUE(holds(after, "data-hidden=\"0\"")) << "no part scrolls sideways by itself";
   EXPECT_TRUE(holds(after, "data-beside=\"true\"")) << "the verdict stands beside the row's name";
 }
