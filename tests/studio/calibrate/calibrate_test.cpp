@@ -238,6 +238,22 @@ TEST(Calibrate, SaysWhatIndentationAloneCannotTell) {
   EXPECT_NEAR(fit->parameters.time, parameters_of(liver()).time, 1e-12);
 }
 
+// Forces that rise ever more slowly, as those of no network do: its constraint cannot be weaker than none.
+TEST(Calibrate, SaysThatTheDataAskForMoreThanABound) {
+  Measurement data = indentation();
+  data.rows.resize(6);
+  for (Row& row : data.rows) row.measured = 0.1 * std::pow(row.imposed, 0.3);
+  const std::vector<Measurement> measured{data};
+  const Result<Fit> fit = fit_material(rig(), measured, from_liver(1));
+  ASSERT_TRUE(fit) << to_string(fit.errors().front());
+  EXPECT_TRUE(fit->estimates[3].is_at_bound) << fit->estimates[3].value;
+  EXPECT_FALSE(fit->estimates[0].is_at_bound);
+  bool is_said = false;
+  for (const std::string& remark : remarks_of(*fit, {}))
+    is_said = is_said || remark.find("is at its bound: the data ask for more") != std::string::npos;
+  EXPECT_TRUE(is_said);
+}
+
 // The ends of what was measured on pig liver (section 5.1.4) differ so much that they tell no modulus.
 TEST(Calibrate, SaysThatThePapersMeasuredRangesTellNothing) {
   const std::vector<Measurement> data = printed("fig-8-liver-measured.csv");
