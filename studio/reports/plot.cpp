@@ -16,6 +16,7 @@ constexpr std::array<const char*, 7> kPalette{"#0072b2", "#d55e00", "#009e73", "
 constexpr double kLeft = 62, kRight = 14, kTop = 30, kBottom = 46, kLegendRow = 17, kLegendText = 28, kEventRow = 16;
 /// Of letters on narrow pages, where they are 15 pixels high, with some to spare.
 constexpr double kLetter = 8, kTitleLetter = 9.6;
+constexpr int kYTicks = 6;
 
 const char* colour(int index) { return kPalette[std::size_t(std::max(index, 0)) % kPalette.size()]; }
 
@@ -123,6 +124,14 @@ int legend_rows(const Plot& plot) {
   return (entries + columns - 1) / columns;
 }
 
+/// Where the y axis stands: its numbers do not reach its title, on narrow pages neither.
+double left_of(const Axis& y) {
+  constexpr double kTitle = 30;
+  std::size_t longest = 0;
+  for (const double v : y.ticks(kYTicks)) longest = std::max(longest, output::short_number(v).size());
+  return std::max(kLeft, kTitle + kLetter * double(longest));
+}
+
 /// Draws one plot.
 struct Drawing {
   const Plot& plot;
@@ -136,7 +145,7 @@ struct Drawing {
       add_line(svg, x.at(v), top, x.at(v), bottom, "grid");
       add_text(svg, x.at(v), bottom + 16, "middle", "tick", output::short_number(v));
     }
-    for (const double v : y.ticks(6)) {
+    for (const double v : y.ticks(kYTicks)) {
       add_line(svg, left, y.at(v), right, y.at(v), "grid");
       add_text(svg, left - 6, y.at(v) + 4, "end", "tick", output::short_number(v));
     }
@@ -294,18 +303,13 @@ std::string escape_html(const std::string& text) {
 
 std::string to_svg(const Plot& plot) {
   const int whole_height = plot.height + int(kLegendRow * legend_rows(plot)) + 6;
-  const double left = kLeft, right = plot.width - kRight, top = kTop + (plot.events.empty() ? 0 : kEventRow),
+  const double right = plot.width - kRight, top = kTop + (plot.events.empty() ? 0 : kEventRow),
                bottom = plot.height - kBottom;
   const Range xs = plot.x_range ? Range{plot.x_range->first, plot.x_range->second} : range_of(plot, false);
   const Range ys = plot.y_range ? Range{plot.y_range->first, plot.y_range->second} : range_of(plot, true);
-  Drawing drawing{plot,
-                  Axis(xs.low, xs.high, plot.is_log_x, left, right),
-                  Axis(ys.low, ys.high, plot.is_log_y, bottom, top),
-                  left,
-                  right,
-                  top,
-                  bottom,
-                  ""};
+  const Axis y(ys.low, ys.high, plot.is_log_y, bottom, top);
+  const double left = left_of(y);
+  Drawing drawing{plot, Axis(xs.low, xs.high, plot.is_log_x, left, right), y, left, right, top, bottom, ""};
   std::string& svg = drawing.svg;
   // Names of clip paths must be unique within a page; they come from the plot's title and size.
   const std::string clip =
