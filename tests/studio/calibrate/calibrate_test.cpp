@@ -301,10 +301,6 @@ TEST(Calibrate, SlowHoldsItInCreepThatScatters) {
   expect_held([](std::mt19937& random) { return std::vector{measured(creep(1.5), 0.02, random)}; });
 }
 
-TEST(Calibrate, SlowHoldsItWhereDataScatterSoMuchThatTheyHardlyTell) {
-  expect_held([](std::mt19937& random) { return std::vector{measured(relaxation(8), 0.05, random)}; });
-}
-
 TEST(Measurements, AreKnownByTheirColumns) {
   const auto slow = read_measurements("depth_mm,force_n\n1,0.1\n2,0.2\n3,0.4\n", "a.csv");
   ASSERT_TRUE(slow);
