@@ -75,8 +75,10 @@ int run_shapes(const ExportArguments& arguments) {
   }();
   if (!outcome) return print_errors(outcome.errors());
   const bool is_same = outcome->first_different_tick < 0;
-  print("%s: %lld moments in %zu files; replay %s\n", arguments.output.c_str(), (long long)outcome->moments,
-        outcome->files.size(), is_same ? "same as recorded" : "DIFFERS from what was recorded");
+  const std::size_t files = outcome->files.size();
+  print("%s: %lld %s in %zu %s; replay %s\n", arguments.output.c_str(), (long long)outcome->moments,
+        outcome->moments == 1 ? "moment" : "moments", files, files == 1 ? "file" : "files",
+        is_same ? "same as recorded" : "DIFFERS from what was recorded");
   return is_same ? exit_good : exit_bad_verdict;
 }
 

@@ -173,19 +173,37 @@ Result<Done> replay_cuts(recordings::SessionReader& session, SessionTrack& track
   return Done{};
 }
 
-/// What is severed in the last State, and the size of its cuts. In which tick something was severed is not known.
+/// The tick after which nothing cuts: no hand holds a blade any more, and nothing is severed.
+std::int64_t end_of_cuts(recordings::SessionReader& session, const SessionTrack& track) {
+  const Model& model = session.start().model;
+  const auto is_blade = [&](std::int32_t tool) {
+    return holds_tool(model, tool) && model.tools[std::size_t(tool)].kind == ToolKind::scalpel;
+  };
+  std::int64_t end = session.tick_count();
+  const auto cuts = [&](std::size_t tick) { return track.severed[tick] != 0 || is_blade(track.tool[tick]); };
+  // Of a second hand the track does not know what it held.
+  while (model.hands == 1 && end > 0 && !cuts(std::size_t(end - 1))) --end;
+  return end;
+}
+
+/// What is severed in the end, and the size of the cuts. In which tick something was severed is not known.
 Result<Done> replay_end(recordings::SessionReader& session, SessionTrack& track) {
   track.severed_at.assign(ElementPlaces(session.start().model).count, -1);
   if (track.cuts.empty()) return Done{};
-  Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(session);
-  if (!cursor) return cursor.errors();
-  if (const Result<Done> ended = cursor->seek(session.tick_count()); !ended) return ended.errors();
-  const std::vector<std::uint8_t> severed = severed_flags(cursor->state());
+  Result<recordings::Keyframe> last = session.keyframe_at_or_before(session.tick_count());
+  if (!last) return last.errors();
+  State state = std::move(last->state);
+  if (const std::int64_t end = end_of_cuts(session, track); last->tick < end) {
+    Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(session);
+    if (!cursor) return cursor.errors();
+    if (const Result<Done> ended = cursor->seek(end); !ended) return ended.errors();
+    state = cursor->state(), track.replays = cursor->same_so_far();
+  }
+  const std::vector<std::uint8_t> severed = severed_flags(state);
   for (std::size_t i = 0; i < severed.size(); ++i)
     if (severed[i]) track.severed_at[i] = std::int64_t(track.cuts.back().last) - 1;
-  track.replays = cursor->same_so_far();
   session::CutMeasures measures(session.start().model);
-  measures.measure(cursor->state()), track.cut = measures.size();
+  measures.measure(state), track.cut = measures.size();
   return Done{};
 }
 

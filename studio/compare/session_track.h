@@ -72,7 +72,7 @@ enum class Replaying {
   short_ones,  ///< those up to kShortSession
   all,
   none,  ///< of cuts alone
-  ends,  ///< nothing but what comes after the last keyframe: what is severed in the end, and the size of the cuts
+  ends,  ///< nothing but cuts after the last keyframe: what is severed in the end, and the size of the cuts
 };
 inline constexpr double kShortSession = 30;  ///< [s]
 

@@ -107,7 +107,8 @@ Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>
   std::vector<Reel> reels;
   for (std::size_t i = 0; i < sessions.size(); ++i) {
     Result<Reel> reel =
-        make_reel(*sessions[i], ticks ? std::move((*ticks)[i]) : FrameTicks{}, {width, options.size.height}, options);
+        make_reel(*sessions[i], ticks ? std::move((*ticks)[i]) : FrameTicks{}, {width, options.size.height}, options,
+                  reels.empty() ? std::nullopt : std::optional(seen_in(reels[0])));
     if (reel)
       reels.push_back(std::move(*reel));
     else
@@ -119,7 +120,7 @@ Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>
     if (!ghost) return ghost.errors();
     reels[0].ghost = std::move(*ghost);
   }
-  if (const Result<Done> alike = look_alike(reels, sessions); !alike) return alike.errors();
+  if (const Result<Done> alike = colour_alike(reels, sessions); !alike) return alike.errors();
   Result<std::unique_ptr<video::VideoWriter>> writer =
       video::VideoWriter::create(path, width * int(sessions.size()), options.size.height, options.fps);
   if (!writer) return writer.errors();

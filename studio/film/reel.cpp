@@ -35,15 +35,17 @@ Result<double> range_of(recordings::SessionReader& session, render::ElementQuant
   return largest;
 }
 
-/// Of all halves the same range of colours, unless one is given.
-Result<Done> find_ranges(std::vector<Reel>& reels, const std::vector<recordings::SessionReader*>& sessions) {
-  render::DrawOptions& first = reels[0].look.draw;
-  if (first.view != render::View::elements || first.full_scale > 0) return Done{};
-  const Result<double> full_scale = full_scale_of(sessions, first.quantity);
-  if (!full_scale) return full_scale.errors();
-  for (Reel& reel : reels)
-    if (*full_scale > 0) reel.look.draw.full_scale = views::unit_of(reel.look.draw.quantity) * *full_scale;
-  return Done{};
+/// As the first one is seen, if that is of the same scene.
+Result<views::Look> look_of(recordings::SessionReader& session, const SessionFilm& film, const render::SceneView& view,
+                            const render::PictureSize& size, const ExportOptions& options,
+                            const std::optional<Seen>& first) {
+  const render::Bounds rest = render::rest_bounds(view);
+  if (first && first->rest.min == rest.min && first->rest.max == rest.max) return first->look;
+  // The last keyframe of the session, so that a part is seen as the whole is; of a damaged one, that of the part.
+  Result<recordings::Keyframe> late = session.keyframe_at_or_before(session.tick_count());
+  if (!late) late = session.keyframe_at_or_before(film.range().to);
+  if (!late) return late.errors();
+  return views::find_look(options.look, film.scene(), view, double(size.width) / size.height, &late->state);
 }
 
 }  // namespace
@@ -66,22 +68,20 @@ Result<Shot> Reel::shoot(std::int64_t frame) const {
   return shot;
 }
 
+Seen seen_in(const Reel& reel) { return {render::rest_bounds(reel.renderer->scene()), reel.look}; }
+
 Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, const render::PictureSize& size,
-                       const ExportOptions& options) {
+                       const ExportOptions& options, const std::optional<Seen>& first, Between between) {
   Reel reel;
   const Result<std::vector<Moment>> all = all_moments(session, ticks.range);
   if (!all) return all.errors();
-  Result<std::unique_ptr<SessionFilm>> film = SessionFilm::create(session, ticks.range, options.allow_diverged);
+  Result<std::unique_ptr<SessionFilm>> film =
+      SessionFilm::create(session, ticks.range, options.allow_diverged, between);
   if (!film) return film.errors();
   reel.film = std::move(*film);
   const Model& model = reel.film->model();
   render::SceneView view = views::view_of(reel.film->scene(), model);
-  // The last keyframe of the session, so that a part is seen as the whole is; of a damaged one, that of the part.
-  Result<recordings::Keyframe> late = session.keyframe_at_or_before(session.tick_count());
-  if (!late) late = session.keyframe_at_or_before(reel.film->range().to);
-  if (!late) return late.errors();
-  const Result<views::Look> look =
-      views::find_look(options.look, reel.film->scene(), view, double(size.width) / size.height, &late->state);
+  const Result<views::Look> look = look_of(session, *reel.film, view, size, options, first);
   if (!look) return look.errors();
   reel.look = *look;
   if (options.strip) reel.strip_height = strip_height(size.height);
@@ -118,11 +118,14 @@ Result<double> full_scale_of(const std::vector<recordings::SessionReader*>& sess
   return largest > 0 ? render::round_up(largest / views::unit_of(quantity)) : 0.0;  // the legend's numbers are round
 }
 
-Result<Done> look_alike(std::vector<Reel>& reels, const std::vector<recordings::SessionReader*>& sessions) {
-  const auto box = [](const Reel& reel) { return render::rest_bounds(reel.renderer->scene()); };
-  for (std::size_t i = 1; i < reels.size(); ++i)
-    if (box(reels[i]).min == box(reels[0]).min && box(reels[i]).max == box(reels[0]).max) reels[i].look = reels[0].look;
-  return find_ranges(reels, sessions);
+Result<Done> colour_alike(std::span<Reel> reels, const std::vector<recordings::SessionReader*>& sessions) {
+  const render::DrawOptions& first = reels[0].look.draw;
+  if (first.view != render::View::elements || first.full_scale > 0) return Done{};
+  const Result<double> full_scale = full_scale_of(sessions, first.quantity);
+  if (!full_scale) return full_scale.errors();
+  for (Reel& reel : reels)
+    if (*full_scale > 0) reel.look.draw.full_scale = views::unit_of(reel.look.draw.quantity) * *full_scale;
+  return Done{};
 }
 
 double largest_force(const std::vector<recordings::SessionReader*>& sessions) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,17 +46,26 @@ struct Reel {
 /// The level of that name; none if there is none of that name.
 std::optional<render::OverlayLevel> level_of(const std::string& name);
 
-/// Errors: a damaged session, a look that the scene does not have, no OpenGL 3.3.
+/// How a scene of that size and place is seen.
+struct Seen {
+  render::Bounds rest;
+  views::Look look;
+};
+Seen seen_in(const Reel& reel);
+
+/// `first`: how the first session of the film is seen; all of the same scene are seen like it, wherever their wounds
+/// are. Errors: a damaged session, a look that the scene does not have, no OpenGL 3.3.
 Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, const render::PictureSize& size,
-                       const ExportOptions& options);
+                       const ExportOptions& options, const std::optional<Seen>& first = {},
+                       Between between = Between::replayed);
 
 /// The value of the last colour of elements in a film of these sessions [the legend's unit]; 0: there are no elements.
 /// Errors: a damaged session.
 Result<double> full_scale_of(const std::vector<recordings::SessionReader*>& sessions, render::ElementQuantity quantity);
 
-/// Makes the reels of a film alike: of one scene all are seen as the first one is, wherever their wounds are; elements
-/// have one range of colours, that of the sessions unless one is given. Errors: a damaged session.
-Result<Done> look_alike(std::vector<Reel>& reels, const std::vector<recordings::SessionReader*>& sessions);
+/// Gives the elements of all reels one range of colours, that of the sessions unless one is given. Errors: a damaged
+/// session.
+Result<Done> colour_alike(std::span<Reel> reels, const std::vector<recordings::SessionReader*>& sessions);
 
 /// The largest force of whole sessions that can be read [N]: a plot whose axis ends there stands still, whatever part
 /// is shown.

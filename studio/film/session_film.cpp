@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
 #include "scenes/scene_file.h"
 #include "studio/loading/loaded_scene.h"
@@ -33,22 +34,24 @@ std::string structure_name(const scenes::SceneSpec& scene) {
 }
 
 SessionFilm::SessionFilm(recordings::SessionReader& reader, scenes::SceneSpec scene, const session::TickRange& range,
-                         bool allow_diverged, recordings::ReplayCursor cursor)
+                         bool allow_diverged, Between between, recordings::ReplayCursor cursor)
     : reader_(reader),
       scene_(std::move(scene)),
       range_(range),
       allow_diverged_(allow_diverged),
+      between_(between),
       cursor_(std::move(cursor)),
       cut_(reader.start().model) {}
 
 Result<std::unique_ptr<SessionFilm>> SessionFilm::create(recordings::SessionReader& reader,
-                                                         const session::TickRange& range, bool allow_diverged) {
+                                                         const session::TickRange& range, bool allow_diverged,
+                                                         Between between) {
   Result<scenes::SceneText> scene = scenes::read_scene(reader.start().scene_text, reader.path() + " (its scene)");
   if (!scene) return scene.errors();
   Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(reader);
   if (!cursor) return cursor.errors();
   std::unique_ptr<SessionFilm> film(
-      new SessionFilm(reader, std::move(scene->spec), range, allow_diverged, std::move(*cursor)));
+      new SessionFilm(reader, std::move(scene->spec), range, allow_diverged, between, std::move(*cursor)));
   if (const Result<Done> begun = film->begin(); !begun) return begun.errors();
   return film;
 }
@@ -63,30 +66,47 @@ Result<Done> SessionFilm::begin() {
   for (const OrganRange& organ : model.organs)
     if (organ.damage_depth > 0 && (overlay_.damage_depth == 0 || organ.damage_depth < overlay_.damage_depth))
       overlay_.damage_depth = organ.damage_depth;
+  plot_every_ = std::max<std::int64_t>(1, std::llround(overlay_.plot_span / model.tick) / kPlotPoints);
+  if (between_ == Between::left_out) return Done{};
   if (allow_diverged_) {
     const Result<recordings::Verdict> verdict = recordings::verify_session(reader_, {range_.from, range_.to});
     if (!verdict) return verdict.errors();
     first_different_ = verdict->first_tick;
   }
-  plot_every_ = std::max<std::int64_t>(1, std::llround(overlay_.plot_span / model.tick) / kPlotPoints);
-  // Fill the plot and the camera's moments from before the range.
+  return start_at(range_.from);
+}
+
+/// Goes there without a shot on the way. What was before is told from the recording.
+Result<Done> SessionFilm::start_at(std::int64_t tick) {
+  const Model& model = this->model();
+  // Fill the plot and the camera's moments.
   const std::int64_t needed = std::max(kPlotPoints * plot_every_, std::int64_t(render::followed_ticks(model.tick)));
-  const std::int64_t before = std::max<std::int64_t>(0, range_.from - needed);
-  const Result<std::vector<recordings::TickRecord>> earlier = reader_.ticks(before, range_.from);
+  const std::int64_t before = std::max<std::int64_t>(0, tick - needed);
+  const Result<std::vector<recordings::TickRecord>> earlier = reader_.ticks(before, tick);
+  overlay_.history.clear(), inputs_.clear();
   // What is damaged before the part is not shown; the part itself is read by the replay.
-  for (std::int64_t tick = before + 1; earlier && tick <= range_.from; ++tick) {
-    const recordings::TickRecord& record = (*earlier)[std::size_t(tick - before - 1)];
+  for (std::int64_t t = before + 1; earlier && t <= tick; ++t) {
+    const recordings::TickRecord& record = (*earlier)[std::size_t(t - before - 1)];
     keep_inputs(record.inputs);
-    if (tick % plot_every_ == 0)
-      overlay_.history.push_back({double(tick) * model.tick, norm(record.tool_force), norm(record.second.tool_force)});
+    if (t % plot_every_ == 0)
+      overlay_.history.push_back({double(t) * model.tick, norm(record.tool_force), norm(record.second.tool_force)});
   }
   const Result<std::vector<recordings::Event>> events = reader_.events();
   if (!events) return events.errors();
-  overlay_.loose = recordings::pieces_came_loose(*events, range_.from);
-  overlay_.inside_out = recordings::cells_inside_out(*events, range_.from);
-  overlay_.tick = range_.from, overlay_.time = double(range_.from) * model.tick;
-  look_back(*events);
-  return cursor_.seek(range_.from);
+  overlay_.loose = recordings::pieces_came_loose(*events, tick);
+  overlay_.inside_out = recordings::cells_inside_out(*events, tick);
+  overlay_.tick = tick, overlay_.time = double(tick) * model.tick;
+  look_back(*events, cursor_.tick(), tick);
+  return cursor_.seek(tick);
+}
+
+/// On to the last keyframe that leaves a tick to compare, if it lies ahead.
+Result<Done> SessionFilm::leap_towards(std::int64_t tick) {
+  const Result<std::vector<std::int64_t>> keyframes = reader_.keyframe_ticks();
+  if (!keyframes) return keyframes.errors();
+  const auto after = std::ranges::lower_bound(*keyframes, tick);
+  const std::int64_t last = after == keyframes->begin() ? 0 : *std::prev(after);
+  return last > cursor_.tick() ? start_at(last) : Done{};
 }
 
 /// Only what is beyond a limit counts; a blade's depth has none.
@@ -95,17 +115,17 @@ void SessionFilm::keep_worst(double force, double depth) {
   if (depth > overlay_.damage_depth) overlay_.worst.depth = std::max(overlay_.worst.depth, depth);
 }
 
-/// What did damage before the part that is shown.
-void SessionFilm::look_back(const std::vector<recordings::Event>& events) {
+/// What did damage in a part that is not shown.
+void SessionFilm::look_back(const std::vector<recordings::Event>& events, std::int64_t begin, std::int64_t end) {
   constexpr std::int64_t kReadTicks = 10000;  // held in memory at a time
   if (overlay_.damage_force <= 0 && overlay_.damage_depth <= 0) return;
-  for (std::int64_t from = 0; from < range_.from; from += kReadTicks) {
-    const auto records = reader_.ticks(from, std::min(from + kReadTicks, range_.from));
+  for (std::int64_t from = begin; from < end; from += kReadTicks) {
+    const std::int64_t to = std::min(from + kReadTicks, end);
+    const auto records = reader_.ticks(from, to);
     if (!records) {
       // Damaged: its events tell at least how each damage began.
       for (const recordings::Event& event : events)
-        if (event.tick >= from && event.tick < from + kReadTicks && event.tick < range_.from)
-          keep_worst(event.force, event.depth);
+        if (event.tick >= from && event.tick < to) keep_worst(event.force, event.depth);
       continue;
     }
     for (const recordings::TickRecord& record : *records)
@@ -177,6 +197,8 @@ void SessionFilm::show_cut_depth() {
 }
 
 Result<Shot> SessionFilm::shoot(std::int64_t tick) {
+  if (between_ == Between::left_out)
+    if (const Result<Done> leapt = leap_towards(tick); !leapt) return leapt.errors();
   while (cursor_.tick() < tick) {
     const Result<bool> went_on = cursor_.step();
     if (!went_on) return went_on.errors();

@@ -27,13 +27,18 @@ struct Shot {
   double share = 0;                ///< of the whole session that has passed
 };
 
+/// What happens to the ticks between two shots: they are replayed, or, for moments that stand alone, left out where a
+/// keyframe allows it. Then each shot is compared with the recording since that keyframe.
+enum class Between { replayed, left_out };
+
 /// Replays a session and gives one Shot for each frame.
 class SessionFilm {
  public:
   /// `range` is the part to show; forces before it come from the recording. With `allow_diverged` the range is verified
-  /// first, so that every shot can say that the replay differs. Errors: a damaged session or scene.
+  /// first if all of it is replayed, so that every shot can say that the replay differs. Errors: a damaged session or
+  /// scene.
   static Result<std::unique_ptr<SessionFilm>> create(recordings::SessionReader& reader, const session::TickRange& range,
-                                                     bool allow_diverged);
+                                                     bool allow_diverged, Between between = Between::replayed);
 
   /// The shot of the State before `tick`. Ticks must not decrease from call to call. Errors: a damaged session; a
   /// replay that differs, unless allowed.
@@ -54,13 +59,15 @@ class SessionFilm {
 
  private:
   SessionFilm(recordings::SessionReader& reader, scenes::SceneSpec scene, const session::TickRange& range,
-              bool allow_diverged, recordings::ReplayCursor cursor);
+              bool allow_diverged, Between between, recordings::ReplayCursor cursor);
   Result<Done> begin();
+  Result<Done> start_at(std::int64_t tick);
+  Result<Done> leap_towards(std::int64_t tick);
   void take_tick();
   void keep_inputs(const Inputs& inputs);
   void show_cut_depth();
   void keep_worst(double force, double depth);
-  void look_back(const std::vector<recordings::Event>& events);
+  void look_back(const std::vector<recordings::Event>& events, std::int64_t begin, std::int64_t end);
   bool holds_blade(const Hand& hand) const;
   Error differs() const;
   std::string verdict() const;
@@ -69,6 +76,7 @@ class SessionFilm {
   scenes::SceneSpec scene_;
   session::TickRange range_;
   bool allow_diverged_;
+  Between between_;
   recordings::ReplayCursor cursor_;
   render::OverlayData overlay_;
   session::CutMeasures cut_;

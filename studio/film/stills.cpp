@@ -24,17 +24,14 @@ FrameTicks ticks_of(const std::vector<std::int64_t>& ticks) {
           [](std::int64_t) { return 1.0; }};
 }
 
-/// One for each session, seen alike as in a film of them.
-Result<std::vector<Reel>> reels_of(const std::vector<recordings::SessionReader*>& sessions,
-                                   const std::vector<StillsRequest>& requests, const ExportOptions& options) {
-  std::vector<Reel> reels;
-  for (std::size_t i = 0; i < sessions.size(); ++i) {
-    Result<Reel> reel = make_reel(*sessions[i], ticks_of(requests[i].ticks), options.size, options);
-    if (!reel) return reel.errors();
-    reels.push_back(std::move(*reel));
-  }
-  if (const Result<Done> alike = look_alike(reels, sessions); !alike) return alike.errors();
-  return reels;
+/// The reel of one of the sessions, seen like `first`.
+Result<Reel> reel_of(const std::vector<recordings::SessionReader*>& sessions, std::size_t number,
+                     const std::vector<std::int64_t>& ticks, const std::optional<Seen>& first,
+                     const ExportOptions& options) {
+  Result<Reel> reel = make_reel(*sessions[number], ticks_of(ticks), options.size, options, first, Between::left_out);
+  if (!reel) return reel;
+  if (const Result<Done> alike = colour_alike({&*reel, 1}, sessions); !alike) return alike.errors();
+  return reel;
 }
 
 }  // namespace
@@ -42,13 +39,16 @@ Result<std::vector<Reel>> reels_of(const std::vector<recordings::SessionReader*>
 Result<std::vector<std::vector<render::Frame>>> draw_stills(const std::vector<recordings::SessionReader*>& sessions,
                                                             const std::vector<StillsRequest>& requests,
                                                             const StillCaption& caption, const ExportOptions& options) {
-  Result<std::vector<Reel>> reels = reels_of(sessions, requests, options);
-  if (!reels) return reels.errors();
   std::int64_t done = 0, total = 0;
   for (const StillsRequest& request : requests) total += std::int64_t(request.ticks.size());
   std::vector<std::vector<render::Frame>> stills(sessions.size());
+  std::optional<Seen> first;
   for (std::size_t s = 0; s < sessions.size(); ++s) {
-    Reel& reel = (*reels)[s];
+    // One after the other, because each takes much memory.
+    Result<Reel> made = reel_of(sessions, s, requests[s].ticks, first, options);
+    if (!made) return made.errors();
+    Reel& reel = *made;
+    if (!first) first = seen_in(reel);
     reel.overlay = std::make_unique<render::Overlay>(options.size.width, options.size.height, kLetters);
     reel.level = render::OverlayLevel::caption;
     for (std::size_t i = 0; i < requests[s].ticks.size(); ++i) {
@@ -75,12 +75,11 @@ Result<Done> write_still(recordings::SessionReader& session, const std::string& 
                  "got " + output::short_number(at_s) + ", must be in [0, " +
                      output::short_number(double(session.tick_count()) * tick) + "] s, as " + session.path() + " is",
                  ""};
-  Result<std::vector<Reel>> reels = reels_of({&session}, {{{at}, {}}}, options);
-  if (!reels) return reels.errors();
-  Result<Shot> shot = (*reels)[0].shoot(0);
+  Result<Reel> reel = reel_of({&session}, 0, {at}, {}, options);
+  if (!reel) return reel.errors();
+  Result<Shot> shot = reel->shoot(0);
   if (!shot) return shot.errors();
-
-  return render::write_png(path, draw_shot((*reels)[0], *shot, largest_force({&session})));
+  return render::write_png(path, draw_shot(*reel, *shot, largest_force({&session})));
 }
 
 }  // namespace ctpm::film

@@ -13,7 +13,10 @@ namespace {
 constexpr std::array<const char*, 7> kPalette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                               "#e69f00", "#56b4e9", "#4d4d4d"};
 
-constexpr double kLeft = 62, kRight = 14, kTop = 30, kBottom = 46, kLegendRow = 17, kEventRow = 16;
+constexpr double kLeft = 62, kRight = 14, kTop = 30, kBottom = 46, kLegendRow = 17, kLegendText = 28, kEventRow = 16;
+/// Of letters on narrow pages, where they are 15 pixels high, with some to spare.
+constexpr double kLetter = 8, kTitleLetter = 9.6;
+constexpr int kYTicks = 6;
 
 const char* colour(int index) { return kPalette[std::size_t(std::max(index, 0)) % kPalette.size()]; }
 
@@ -105,6 +108,30 @@ bool has_marks_only(const Series& series) { return series.stroke == Stroke::mark
 /// Whether the legend names it.
 bool is_listed(const Series& series) { return !series.name.empty() && !series.x.empty(); }
 
+/// Two, unless a name would be longer than its half.
+int legend_columns(const Plot& plot) {
+  std::size_t longest = 0;
+  for (const Series& s : plot.series) longest = std::max(longest, is_listed(s) ? s.name.size() : 0);
+  for (const Band& band : plot.bands) longest = std::max(longest, band.name.size());
+  return kLegendText + kLetter * double(longest) > 0.5 * (plot.width - kLeft - kRight) ? 1 : 2;
+}
+
+int legend_rows(const Plot& plot) {
+  int entries = 0;
+  for (const Series& s : plot.series) entries += is_listed(s) ? 1 : 0;
+  for (const Band& band : plot.bands) entries += band.name.empty() ? 0 : 1;
+  const int columns = legend_columns(plot);
+  return (entries + columns - 1) / columns;
+}
+
+/// Where the y axis stands: its numbers do not reach its title, on narrow pages neither.
+double left_of(const Axis& y) {
+  constexpr double kTitle = 30;
+  std::size_t longest = 0;
+  for (const double v : y.ticks(kYTicks)) longest = std::max(longest, output::short_number(v).size());
+  return std::max(kLeft, kTitle + kLetter * double(longest));
+}
+
 /// Draws one plot.
 struct Drawing {
   const Plot& plot;
@@ -118,7 +145,7 @@ struct Drawing {
       add_line(svg, x.at(v), top, x.at(v), bottom, "grid");
       add_text(svg, x.at(v), bottom + 16, "middle", "tick", output::short_number(v));
     }
-    for (const double v : y.ticks(6)) {
+    for (const double v : y.ticks(kYTicks)) {
       add_line(svg, left, y.at(v), right, y.at(v), "grid");
       add_text(svg, left - 6, y.at(v) + 4, "end", "tick", output::short_number(v));
     }
@@ -126,7 +153,9 @@ struct Drawing {
     add_text(svg, 0.5 * (left + right), bottom + 36, "middle", "title", plot.x_title);
     const std::string turn = " transform=\"rotate(-90 15 " + number(0.5 * (top + bottom)) + ")\"";
     add_text(svg, 15, 0.5 * (top + bottom), "middle", "title", plot.y_title, turn);
-    add_text(svg, left, 18, "start", "head", plot.title);
+    // A long title begins before the axis.
+    const double room = plot.width - kTitleLetter * double(plot.title.size());
+    add_text(svg, std::clamp(room, 4.0, left), 18, "start", "head", plot.title);
   }
 
   void add_bands() {
@@ -188,11 +217,13 @@ struct Drawing {
     }
   }
 
-  /// Below the axes, in two columns.
+  /// Below the axes.
   void add_legend(const std::vector<const char*>& inks) {
     int entry = 0;
+    const int columns = legend_columns(plot);
     const auto place = [&] {
-      const double px = left + (entry % 2) * 0.5 * (right - left), py = bottom + 54 + kLegendRow * (entry / 2);
+      const double px = left + (entry % columns) * (right - left) / columns,
+                   py = bottom + 54 + kLegendRow * (entry / columns);
       ++entry;
       return std::pair{px, py};
     };
@@ -209,24 +240,17 @@ struct Drawing {
                number(py - 4) + "\" stroke=\"" + inks[i] + "\" stroke-width=\"2\"" +
                (s.stroke == Stroke::dashed ? " stroke-dasharray=\"6 4\"" : "") + "/>\n";
       if (s.stroke == Stroke::path) add_mark(px + 11, py - 4, 3, inks[i], true);
-      add_text(svg, px + 28, py, "start", "legend", s.name);
+      add_text(svg, px + kLegendText, py, "start", "legend", s.name);
     }
     for (const Band& band : plot.bands) {
       if (band.name.empty()) continue;
       const auto [px, py] = place();
       svg += "<rect x=\"" + number(px) + "\" y=\"" + number(py - 10) + "\" width=\"22\" height=\"11\" fill=\"" +
              colour(band.colour) + "\" fill-opacity=\"0.25\"/>\n";
-      add_text(svg, px + 28, py, "start", "legend", band.name);
+      add_text(svg, px + kLegendText, py, "start", "legend", band.name);
     }
   }
 };
-
-int legend_rows(const Plot& plot) {
-  int entries = 0;
-  for (const Series& s : plot.series) entries += is_listed(s) ? 1 : 0;
-  for (const Band& band : plot.bands) entries += band.name.empty() ? 0 : 1;
-  return (entries + 1) / 2;
-}
 
 }  // namespace
 
@@ -279,18 +303,13 @@ std::string escape_html(const std::string& text) {
 
 std::string to_svg(const Plot& plot) {
   const int whole_height = plot.height + int(kLegendRow * legend_rows(plot)) + 6;
-  const double left = kLeft, right = plot.width - kRight, top = kTop + (plot.events.empty() ? 0 : kEventRow),
+  const double right = plot.width - kRight, top = kTop + (plot.events.empty() ? 0 : kEventRow),
                bottom = plot.height - kBottom;
   const Range xs = plot.x_range ? Range{plot.x_range->first, plot.x_range->second} : range_of(plot, false);
   const Range ys = plot.y_range ? Range{plot.y_range->first, plot.y_range->second} : range_of(plot, true);
-  Drawing drawing{plot,
-                  Axis(xs.low, xs.high, plot.is_log_x, left, right),
-                  Axis(ys.low, ys.high, plot.is_log_y, bottom, top),
-                  left,
-                  right,
-                  top,
-                  bottom,
-                  ""};
+  const Axis y(ys.low, ys.high, plot.is_log_y, bottom, top);
+  const double left = left_of(y);
+  Drawing drawing{plot, Axis(xs.low, xs.high, plot.is_log_x, left, right), y, left, right, top, bottom, ""};
   std::string& svg = drawing.svg;
   // Names of clip paths must be unique within a page; they come from the plot's title and size.
   const std::string clip =

@@ -216,7 +216,7 @@ TEST(CutContact, ACapRestsOnTheBedThatItWasCutFromWhereTheOrganMeetsItself) {
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
     if (model.rest_position.z[i] > 0.018) state.position.add(i, {0.002, 0.001, 0.005});
   stepping::Stepper stepper(model);
-  for (int i = 0; i < 4000; ++i) ASSERT_EQ(stepper.step(state, Inputs{}).status, stepping::StepStatus::ok);
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(stepper.step(state, Inputs{}).status, stepping::StepStatus::ok);
   double fastest = 0, sunk = 0, aside = 0;
   for (std::size_t i = 0; i < model.sphere_count(); ++i) {
     fastest = std::max(fastest, norm(state.velocity[i]));
@@ -224,7 +224,7 @@ TEST(CutContact, ACapRestsOnTheBedThatItWasCutFromWhereTheOrganMeetsItself) {
     if (model.rest_position.z[i] > 0.018) sunk = std::max(sunk, -by.z), aside = std::max(aside, std::hypot(by.x, by.y));
   }
   std::printf("fastest %.3f mm/s, %.2f mm down, %.2f mm aside\n", 1e3 * fastest, 1e3 * sunk, 1e3 * aside);
-  EXPECT_LT(fastest, 2e-3);
+  EXPECT_LT(fastest, 0.1e-3) << "it lies after a second, and stays";
   EXPECT_LT(sunk, 2e-3);
   EXPECT_LT(aside, 4e-3);
   model.organs[0].meets_itself = false;

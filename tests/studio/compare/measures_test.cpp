@@ -304,6 +304,28 @@ TEST_F(Measures, EachHasAUnitADirectionAMeaningAndASource) {
   }
 }
 
+TEST_F(Measures, OfTimeHaveNoValueWhereASessionLacksRealTime) {
+  for (const bool is_timed : {true, false}) {
+    compare::SessionTrack track = press();
+    track.is_timed = is_timed, track.slip = 0.75;
+    std::vector<compare::SessionValue> values = compare::measure_session(track, 3.0, 0);
+    compare::refuse_times(values, track);
+    int refused = 0;
+    for (const compare::SessionValue& value : values) {
+      const std::string key = value.measure->key, said = "the session lacks 0.750 s of real time";
+      refused += value.note == said;
+      if (key == "path_length_mm" || key == "peak_force_n") {
+        EXPECT_TRUE(value.value) << key << " needs no clock";
+      }
+      for (const char* timed : {"completion_time_s", "idle_time_s", "spectral_arc_length", "log_dimensionless_jerk"})
+        if (key == timed) {
+          EXPECT_EQ(value.note == said, !is_timed) << key;
+        }
+    }
+    EXPECT_EQ(refused > 3, !is_timed);
+  }
+}
+
 TEST(SessionMeasures, WorkImpulseAndZonesAreThoseOfAForceThatIsKnown) {
   // A tool goes 100 mm in a second against 2 N, the second half of it against 4 N and through a zone; then it goes back
   // while the tissue pushes it.

@@ -90,7 +90,7 @@ TEST_F(Compare, AHardPressPassesTheForceOfTheExpertAndTheDamageDepth) {
 }
 
 TEST_F(Compare, ASessionBesideItselfIsTheSame) {
-  const auto compared = compare(clumsy_cut_, clumsy_cut_, {"--json"});
+  const auto compared = compare(cut_, cut_, {"--json"});
   ASSERT_EQ(compared.code, 0) << compared.err;
   EXPECT_EQ(value_of(compared.out, "cut_overlap", "trainee"), 1);
   for (const char* none : {"cut_path_mean_distance_mm", "cut_path_hausdorff_mm", "aligned_deviation_mean_mm",

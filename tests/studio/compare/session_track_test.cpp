@@ -62,6 +62,41 @@ TEST(Track, FindsTheElementsThatWereSeveredAndWhen) {
   EXPECT_GT(all, 5);
 }
 
+/// A press, a cut in ticks [400, 700), and another press from there on. The record of one tick states another hash than
+/// a replay has.
+compare::SessionTrack track_of_end(const std::string& path, std::int64_t ticks, std::int64_t forged,
+                                   compare::Replaying replaying) {
+  const recordings::SessionStart start = testing::small_start();
+  auto writer = recordings::SessionWriter::create(path, start, {.wait_when_full = true, .keyframe_ticks = 500});
+  CTPM_CHECK(bool(writer), "a test's session can be created");
+  testing::live(start, ticks, [&](const State& after, recordings::TickRecord record) {
+    if (after.tick == forged + 1) ++record.state_hash;
+    writer->append(after, record);
+  });
+  CTPM_CHECK(bool(writer->finish()), "a test's session can be finished");
+  auto reader = recordings::SessionReader::open(path);
+  return *compare::read_track(*reader, replaying);
+}
+
+TEST(Track, OfWhatIsCutInTheEndReplaysNoMoreThanCuts) {
+  const testing::Folder folder;
+  using compare::Replaying;
+  // Cut before the last keyframe, after it, and to the very end.
+  for (const std::int64_t ticks : {1050, 900, 690}) {
+    const std::string name = std::to_string(ticks);
+    const auto all = track_of_end(folder / (name + "a.ctpm"), ticks, -1, Replaying::all),
+               ends = track_of_end(folder / (name + "b.ctpm"), ticks, ticks - 1, Replaying::ends);
+    ASSERT_TRUE(all.cut && ends.cut) << ticks;
+    EXPECT_GT(ends.cut->area, 1e-6);
+    EXPECT_EQ(all.cut->area, ends.cut->area) << ticks;
+    EXPECT_EQ(all.cut->depth, ends.cut->depth) << ticks;
+    for (std::size_t i = 0; i < all.severed_at.size(); ++i)
+      EXPECT_EQ(all.severed_at[i] >= 0, ends.severed_at[i] >= 0) << ticks;
+    EXPECT_EQ(ends.replays, ticks != 690) << "the last tick is one of the cut's, or is not replayed";
+  }
+  EXPECT_FALSE(track_of_end(folder / "in.ctpm", 900, 650, Replaying::ends).replays);
+}
+
 /// A session of two hands, in the other order if `is_swapped`.
 compare::SessionTrack track_of_two(const std::string& path, bool is_swapped) {
   const recordings::SessionStart start = testing::small_start(3, 3, 3, 2);

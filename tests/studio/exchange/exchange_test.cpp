@@ -86,7 +86,7 @@ class Exchange : public ::testing::Test {
 TEST_F(Exchange, AssimpReadsTheMomentOfAGlb) {
   const auto outcome = export_to("moment.glb");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("1 moments in 1 files; replay same as recorded"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("1 moment in 1 file; replay same as recorded"), std::string::npos) << outcome.out;
   const Truth truth(-1);
   ASSERT_GT(truth.organs[0].triangle.size(), truth.organs[0].outer_triangles) << "the session ends with a cut";
   const Result<importers::RawMesh> read = importers::read_mesh(path("moment.glb"));

@@ -89,7 +89,13 @@ TEST_F(Page, MarksAreReadBesideALineAndAlone) {
 TEST_F(Page, OnASmallScreenNothingIsOutOfSight) {
   reports::Report report("A title that is longer than a telephone is wide, or nearly so", "below it");
   report.conclude(reports::ReportVerdict::missed, "One of two goals is missed.", {"The second one."});
-  report.add_plots({force_plot()});
+  reports::Plot small = force_plot();
+  small.title = "mean deviation of the aligned paths", small.width = 360,
+  small.series[0].name = "fails too often above", small.bands = {{"experts, one spread", 2, 3}};
+  reports::Plot residuals = force_plot();
+  residuals.y_title = "network less measured [N]";
+  residuals.y_range = {-0.0022, 0.0012}, residuals.series[0].y = {-0.002, 0, 0.001};
+  report.add_plots({force_plot(), small, residuals});
   reports::Table table;
   for (int i = 0; i < 14; ++i) table.columns.push_back({"key", "column number " + std::to_string(i)});
   table.rows.emplace_back(14, reports::Cell(1234567.0));
@@ -103,10 +109,16 @@ TEST_F(Page, OnASmallScreenNothingIsOutOfSight) {
       const inner = document.querySelector("iframe").contentDocument, cell = inner.querySelector(".verdict-cell"), first = inner.querySelector("td");
       document.body.dataset.wider = inner.documentElement.scrollWidth - inner.documentElement.clientWidth;
       document.body.dataset.hidden = [...inner.querySelectorAll("*")].filter(e => getComputedStyle(e).overflowX === "auto" && e.scrollWidth > e.clientWidth).length;
+      const texts = svg => [...svg.querySelectorAll(".legend, .head, .title, .tick")].map(e => ({ text: e.textContent, box: e.getBoundingClientRect() }));
+      const meet = (a, b) => a.right > b.left && b.right > a.left && a.bottom > b.top + 3 && b.bottom > a.top + 3;
+      document.body.dataset.cut = [...inner.querySelectorAll("svg")].flatMap(svg => texts(svg).filter((one, i, all) =>
+        one.box.right > svg.getBoundingClientRect().right || all.some((other, j) => j != i && meet(one.box, other.box)))).map(one => one.text).join(", ");
       document.body.dataset.beside = Math.abs(cell.getBoundingClientRect().top - first.getBoundingClientRect().top) < 8;
     };
   </script>)");
   EXPECT_TRUE(holds(after, "data-wider=\"0\"")) << after.substr(0, 300);
+  EXPECT_TRUE(holds(after, "data-cut=\"\"")) << "no text of a plot lies on another or ends outside it: "
+                                             << after.substr(std::min(after.find("data-cut"), after.size()), 100);
   EXPECT_TRUE(holds(after, "data-hidden=\"0\"")) << "no part scrolls sideways by itself";
   EXPECT_TRUE(holds(after, "data-beside=\"true\"")) << "the verdict stands beside the row's name";
 }

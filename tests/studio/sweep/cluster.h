@@ -142,7 +142,7 @@ class Cluster {
               "\nProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\nSelectType=select/cons_tres\n"
               "SelectTypeParameters=CR_CPU\nJobAcctGatherType=jobacct_gather/none\n"
               "AccountingStorageType=accounting_storage/none\nReturnToService=2\nSlurmdTimeout=5\nSlurmctldTimeout=5\n"
-              "KillWait=1\nBatchStartTimeout=1\nMpiDefault=none\nMaxArraySize=" +
+              "KillWait=1\nMessageTimeout=2\nBatchStartTimeout=1\nMpiDefault=none\nMaxArraySize=" +
               std::to_string(most_elements) +
               "\nSchedulerParameters=sched_interval=1,sched_min_interval=0,batch_sched_delay=0\n"
               "NodeName=node NodeHostname=" +
