@@ -150,8 +150,7 @@ void conclude(reports::Report& report, const std::vector<Claim>& claims) {
     for (const Claim& claim : claims)
       if (claim.kind == kind && claim.bound.value_or(0) > 0 && std::isfinite(claim.error()))
         shares.push_back(std::abs(claim.error()) / *claim.bound);
-  if (!shares.empty())
-    report.add_plots({reports::plot_of_bounds("Network, then print: share of its bound", shares)});
+  if (!shares.empty()) report.add_plots({reports::plot_of_bounds("Network, then print: share of its bound", shares)});
 }
 
 }  // namespace
