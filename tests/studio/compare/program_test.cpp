@@ -113,13 +113,13 @@ TEST_F(Compare, WritesOnePageThatLoadsNothingAndItsNumbers) {
     EXPECT_FALSE(holds(page, loading)) << loading;
   EXPECT_LT(page.find("force above the limit"), page.find("away from the expert"));  // the gravest comes first
   // What to do better comes before everything else; events of the plots lead to pictures of both hands.
-  EXPECT_LT(page.find("Press more gently: 7.5"), page.find("<h2>"));
+  EXPECT_LT(page.find("Press more gently: 7.8"), page.find("<h2>"));
   EXPECT_TRUE(holds(page, "href=\"#moment-1\"") && holds(page, "<figure id=\"moment-1\"><img")) << "a picture of it";
   std::size_t pictures = 0;
   for (auto at = page.find("<img"); at != std::string::npos; at = page.find("<img", at + 1)) ++pictures;
   EXPECT_EQ(pictures, 8u);
   const std::string results = slurp(folder_.path() / "report/results.json");
-  EXPECT_LT(results.find("Press more gently: 7.5"), results.find("\"measures\""));
+  EXPECT_LT(results.find("Press more gently: 7.8"), results.find("\"measures\""));
   EXPECT_EQ(results, compare(press_, hard_press_, {"--json"}).out);
 }
 
