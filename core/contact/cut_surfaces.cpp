@@ -14,6 +14,9 @@ namespace {
 constexpr double kFarthestPatch = 3.75;
 constexpr double kDiagonal = 1.7321;  ///< of a cube: the lattice may be turned
 
+/// A blade that cut nothing for so many ticks has probably done its cut.
+constexpr int kRests = 50;
+
 /// Rows of the swept surface that the blade has left: all of them, unless the last row is where the front is now.
 /// Then those before the sheet that it goes on with, which begins with a row to which nothing was swept.
 std::size_t rows_left_behind(const State& state, bool cuts) {
@@ -60,11 +63,25 @@ void CutSurfaces::prepare() {
 }
 
 void CutSurfaces::begin_tick(const State& state, bool cuts) {
-  // Nothing but tissue, obstacles and a ball in the other hand touches cuts while a blade is held.
-  if (organs_.empty() || (cuts && !model_.has_meeting_bodies() && model_.hands < 2)) return;
-  const std::size_t rows = rows_left_behind(state, cuts);
+  if (organs_.empty()) return;
+  // Nothing but tissue, obstacles and a ball in the other hand touches cuts while a blade is held. Without them the
+  // worker begins when the blade rests or is out of the tissue, so that the ball that is taken next need not wait.
+  const bool is_touched = !cuts || model_.has_meeting_bodies() || model_.hands > 1;
+  if (!is_touched && !rests(state)) return;
+  const std::size_t rows = rows_left_behind(state, cuts && is_touched);
   if (followed_ ? !is_same(*followed_, state, rows) : rows > 0) start(state, rows);
   if (model_.has_meeting_bodies()) wait();
+}
+
+/// Whether nothing was cut in the last ticks.
+bool CutSurfaces::rests(const State& state) {
+  const std::size_t points = state.swept.size();
+  if (points == 0) return false;
+  bool is_known = points == seen_points_;
+  for (std::size_t n = 0; n < kEdgeNodes; ++n)
+    is_known = seen_[n] == std::exchange(seen_[n], state.swept[points - kEdgeNodes + n]) && is_known;
+  seen_points_ = points, rested_ = is_known ? rested_ + 1 : 0;
+  return rested_ >= kRests;
 }
 
 /// Has the worker follow the first `rows` rows of the swept surface of `state`.

@@ -9,6 +9,7 @@
 
 #include "core/cutbody/cut_patches.h"
 #include "core/cutbody/cut_points.h"
+#include "core/cutting/swept_surface.h"
 #include "core/model/box.h"
 #include "core/model/model.h"
 #include "core/model/state.h"
@@ -84,6 +85,7 @@ class CutSurfaces {
   cutbody::CutPatch* patch(const cutbody::CutPoints::Place& place);
 
  private:
+  bool rests(const State& state);
   void start(const State& state, std::size_t rows);
   void wait();
   std::vector<std::uint8_t> find_hidden() const;
@@ -96,6 +98,9 @@ class CutSurfaces {
   std::vector<std::uint8_t> hidden_;  ///< (vertex_count through all organs, or empty)
   const Vec3Array* position_ = nullptr;
 
+  std::size_t seen_points_ = 0;  ///< of the swept surface in the last tick, and its last row
+  cutting::Front seen_{};
+  int rested_ = 0;                         ///< ticks since the blade cut
   std::shared_ptr<const State> followed_;  ///< only with a swept surface; null: nothing was cut
   Box around_{Vec3{}};                     ///< what patches stand for at rest [m]
   /// What will be in hidden_. While it is valid the worker has organs_ to itself.

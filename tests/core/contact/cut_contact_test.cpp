@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/contact/cut_surfaces.h"
 #include "core/cutbody/cut_points.h"
 #include "core/cutting/blade_geometry.h"
 #include "core/stepping/step.h"
@@ -312,6 +313,22 @@ TEST_P(CutContactUnder, HowFastACutIsFollowedChangesNoBit) {
         if (tick >= 150 && tick % 15 == 0) fresh.emplace(model);
       });
   expect_same(at_once, late);
+}
+
+TEST(CutContact, ACutIsFollowedBeforeTheBladeIsPutAway) {
+  const Model model = testing::block_to_cut(8, 8, 4, 0.004);
+  State state = open_wound(model, 0.0013, 0.006, 0.3);
+  contact::CutSurfaces cuts(model);
+  const auto last = state.swept.size() - 1;
+  for (int tick = 0; tick < 100; ++tick) {
+    state.swept.set(last, state.swept[last] + Vec3{0, 1e-5, 0});
+    cuts.begin_tick(state, true);
+    ASSERT_EQ(cuts.version(), 0u) << "the blade goes on cutting";
+  }
+  for (int tick = 0; tick < 100; ++tick) cuts.begin_tick(state, true);
+  EXPECT_EQ(cuts.version(), 1u);
+  cuts.begin_tick(state, false);
+  EXPECT_EQ(cuts.version(), 1u) << "it is the same cut when the blade is put away";
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, CutContactUnder,
