@@ -63,7 +63,8 @@ const elements::Coordinates& ImplicitSolve::solve_near(const StateView& predicte
       }
     });
   };
-  for_coordinates([&](std::size_t begin, std::size_t end) { std::fill(&change[begin], &change[end - 1] + 1, 0.0); });
+  for_coordinates(
+      [&](std::size_t begin, std::size_t end) { std::fill(change.data() + begin, change.data() + end, 0.0); });
   solve_contacts({before, &predicted.velocity, energy_of(velocity_)}, contacts, resistance, change, report);
   for_coordinates([&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) velocity_[i] += change[i];

@@ -92,8 +92,7 @@ IntegratorChoice choose_integrator(const Model& model) {
   const double longest = stable_step_bound(model);
   const std::int32_t asked = model.solver.substeps;
   const double needed = std::max(std::ceil(model.tick / (kSafety * longest)), double(asked));
-  const bool has_blade = std::any_of(model.tools.begin(), model.tools.end(),
-                                     [](const Tool& tool) { return tool.kind == ToolKind::scalpel; });
+  const bool has_blade = model.has_scalpel();
   if (has_blade && model.has_softening && loss_rate(model) < kLeastLoss)
     return {Integrator::backward_euler, asked, true, true,
             "softening gives energy to what a cut leaves swinging, and the tissue's own viscosity hardly damps it"};

@@ -40,14 +40,11 @@ void stretch(const StepContext& context, const Vec3Array& from, double factor, V
 /// to = velocity + h * acceleration; the acceleration is 0 if none is known.
 void extrapolate(const StepContext& context, const Vec3Array& velocity, const Vec3Array& acceleration, double h,
                  Vec3Array& to) {
-  const bool is_known = acceleration.size() > 0;
+  if (acceleration.size() > 0) return drift(context.elements.slabs(), context.team, velocity, acceleration, h, to);
   for_coordinates(context, [&](auto axis, std::size_t begin, std::size_t end) {
-    const double *v = (velocity.*axis).data(), *a = (acceleration.*axis).data();
+    const double* v = (velocity.*axis).data();
     double* __restrict out = (to.*axis).data();
-    if (is_known)
-      for (std::size_t i = begin; i < end; ++i) out[i] = v[i] + h * a[i];
-    else
-      for (std::size_t i = begin; i < end; ++i) out[i] = v[i] + 0.0;
+    for (std::size_t i = begin; i < end; ++i) out[i] = v[i] + 0.0;
   });
 }
 
