@@ -109,8 +109,7 @@ int print_outcome(const std::string& path, const Model& model, const session::Re
   print("tick time p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms, %lld late\n", s.tick_time_p50 * 1e3,
         s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)outcome.run.late_ticks);
   if (outcome.run.fallbacks > 0)
-    print("%lld ticks by backward Euler instead: too long for the motion under sdirk2\n",
-          (long long)outcome.run.fallbacks);
+    print("%lld ticks were too long for sdirk2: backward Euler took them\n", (long long)outcome.run.fallbacks);
   for (const session::Deed deed : {session::Deed::contact, session::Deed::cut})
     if (const session::DeedTimes of = times.of(deed); of.ticks > 0)
       print("  %s p50 %.3f ms, p99 %.3f ms, %lld ticks\n", session::name_of(deed), of.p50 * 1e3, of.p99 * 1e3,
