@@ -1,8 +1,11 @@
 #include "core/cutbody/side_binding.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "core/cutting/blade_geometry.h"
@@ -127,6 +130,14 @@ SideBinding::SideBinding(const Model& model, const CutGrid& grid)
       whole_(model.surfaces[std::size_t(grid.organ())]),
       grid_(grid),
       joined_(grid) {}
+
+/// Vertices of one side differ in their places.
+std::size_t SideBinding::KeyHash::operator()(const Key& key) const {
+  std::size_t hash = std::hash<Index>()(key.side);
+  for (const double x : {key.x, key.y, key.z})
+    hash = std::rotl(hash, 23) * 0x9e3779b97f4a7c15u ^ std::hash<double>()(x);
+  return hash + 2 * std::size_t(key.is_outer) + std::size_t(key.is_wall);
+}
 
 void SideBinding::forget_near(CutGrid::NodeBox changed) {
   // Edges and rows of the cut beside a place change it; those farther away may change what its nodes see.

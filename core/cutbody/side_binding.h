@@ -1,10 +1,9 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <cstdint>
-#include <map>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "core/cutbody/cut_grid.h"
@@ -63,7 +62,10 @@ class SideBinding {
     Index side;
     double x, y, z;
     bool is_outer, is_wall;
-    friend auto operator<=>(const Key&, const Key&) = default;
+    friend bool operator==(const Key&, const Key&) = default;
+  };
+  struct KeyHash {
+    std::size_t operator()(const Key& key) const;
   };
 
   struct Entry {
@@ -93,7 +95,7 @@ class SideBinding {
   const Surface& whole_;
   const CutGrid& grid_;
   JoinedSpheres joined_;
-  std::map<Key, Entry> bound_;
+  std::unordered_map<Key, Entry, KeyHash> bound_;
   cutting::SweptBoxes row_boxes_;  ///< see cutting::boxes_of_rows()
   std::vector<Index> piece_;       ///< that each node of the grid follows; empty until it is asked for after a change
 };

@@ -20,17 +20,46 @@ CutGrid::Index shortest_way(CutGrid::Node by) {
   return up + down;
 }
 
+/// For each row around a node, and each number of edges, the nodes to which the shortest way has so many.
+using Shortest = std::array<std::uint32_t, Sight::kMostHops + 1>;
+std::vector<Shortest> shortest_ways() {
+  constexpr CutGrid::Index kMost = Sight::kMostHops;
+  std::vector<Shortest> ways;
+  for (CutGrid::Index k = -kMost; k <= kMost; ++k)
+    for (CutGrid::Index j = -kMost; j <= kMost; ++j) {
+      Shortest& row = ways.emplace_back();
+      for (CutGrid::Index i = -kMost; i <= kMost; ++i)
+        if (const CutGrid::Index way = shortest_way({i, j, k}); way <= kMost)
+          row[std::size_t(way)] |= std::uint32_t(1) << (i + kMost);
+    }
+  return ways;
+}
+
 CutGrid::Node end_of(CutGrid::Node n, int direction) {
   return {n[0] + (direction & 1), n[1] + (direction >> 1 & 1), n[2] + (direction >> 2)};
 }
 
 }  // namespace
 
-Sight::Sight(const CutGrid& grid) : grid_(grid), words_(std::size_t(grid.extent()[0] + 2 * kMostHops + 63) / 64 + 1) {
-  const std::size_t size = words_ * std::size_t(grid.extent()[1]) * std::size_t(grid.extent()[2]);
+Sight::Sight(const CutGrid& grid)
+    : grid_(grid),
+      rows_(grid.extent()[1] + 2 * kBeside),
+      layers_(grid.extent()[2] + 2 * kBeside),
+      windows_((grid.extent()[0] - 1) / kStride + 1) {
+  const auto size = std::size_t(rows_) * std::size_t(layers_) * std::size_t(windows_);
   for (Bits& open : is_open_) open.assign(size, 0);
-  at_cut_.assign(size, 0), has_sphere_.assign(size, 0);
+  at_cut_.assign(size, 0), beside_cut_.assign(size, 0), has_sphere_.assign(size, 0);
   update({{0, 0, 0}, grid.extent()});
+}
+
+/// In each window that the node is in.
+void Sight::set(Bits& bits, CutGrid::Node n, bool value) {
+  const Index along = n[0] + kMostHops, last = std::min(along / kStride, windows_ - 1);
+  for (Index w = std::max(0, (along - kWindow + kStride) / kStride); w <= last; ++w) {
+    Row& row = bits[at(w, n[1], n[2])];
+    const Row bit = Row(1) << (along - kStride * w);
+    row = value ? row | bit : row & ~bit;
+  }
 }
 
 void Sight::update(CutGrid::NodeBox changed) {
@@ -56,68 +85,107 @@ void Sight::update(CutGrid::NodeBox changed) {
     }
     set(at_cut_, n, at_cut), set(has_sphere_, n, !grid_.spheres_at(node).empty());
   });
+  find_beside_cut(changed);
+  for (std::unique_ptr<View>& view : view_)
+    if (view && grid_.is_near(changed, view->node, kMostHops + 1)) view.reset();
 }
 
-/// The bits of the row that is `j` and `k` nodes from `home` along the other axes, the middle one beside `home`.
-Sight::Row Sight::row_at(const Bits& bits, CutGrid::Node home, Index j, Index k) const {
-  const CutGrid::Node n{home[0] - kMostHops, home[1] + j, home[2] + k};
-  if (n[1] < 0 || n[2] < 0 || n[1] >= grid_.extent()[1] || n[2] >= grid_.extent()[2]) return 0;
-  const std::size_t first = word(n), shift = std::size_t(n[0] + kMostHops) % 64;
-  std::uint64_t row = bits[first] >> shift;
-  if (shift > 0) row |= bits[first + 1] << (64 - shift);
-  return Row(row & ((std::uint64_t(1) << kSide) - 1));
-}
-
-/// Adds the spheres of the nodes of a row that were reached over `hops` edges.
-void Sight::add_spheres(CutGrid::Node home, Index hops, Index j, Index k, Row row, Seen& seen) const {
-  for (; row != 0; row &= row - 1) {
-    const Index i = std::countr_zero(row) - kMostHops;
-    const Index detour = hops - shortest_way({i, j, k});
-    if (detour > kMostDetour) continue;
-    for (const Index sphere : grid_.spheres_at(grid_.at({home[0] + i, home[1] + j, home[2] + k})))
-      seen.sphere.push_back({sphere, detour});
+/// Adds what is reached over an edge from the nodes of `last` to a run of rows, the first of which is at `first` in the
+/// windows; `layer`: rows of `last` from one layer to the next.
+void Sight::arrive(std::size_t first, const Row* last, Index layer, std::span<Row> found) const {
+  for (int d = 1; d < CutGrid::kDirections; ++d) {
+    const int dx = d & 1, dy = d >> 1 & 1, dz = d >> 2;
+    const Row *below = last - (dy + layer * dz), *above = last + (dy + layer * dz);
+    const Row *open = &is_open_[std::size_t(d)][first], *open_below = open - (dy + rows_ * dz);
+    for (std::size_t j = 0; j < found.size(); ++j)
+      found[j] |= (below[j] & open_below[j]) << dx | (above[j] >> dx & open[j]);
   }
+}
+
+/// Finds what is reached over `hops` edges and not over fewer.
+void Sight::go_on(CutGrid::Node home, Index hops, const Rows& last, Rows& visited, Rows& next) const {
+  for (Index k = -hops; k <= hops; ++k) {
+    std::array<Row, std::size_t(kRows)> found{};
+    const auto count = std::size_t(2 * hops + 1), to = around(-hops, k);
+    arrive(at(window(home), home[1] - hops, home[2] + k), &last[to], kRows, std::span(found).first(count));
+    for (std::size_t j = 0; j < count; ++j) next[to + j] = found[j] & ~visited[to + j], visited[to + j] |= found[j];
+  }
+}
+
+/// Finds the nodes again from which an edge across a cut is fewer edges away than are seen along, where edges in a box
+/// have changed.
+void Sight::find_beside_cut(CutGrid::NodeBox changed) {
+  CutGrid::Node low, high, first, last;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Index end = grid_.extent()[a] - 1;
+    low[a] = std::max(0, changed.low[a] - kMostHops), high[a] = std::min(end, changed.high[a] + kMostHops);
+    first[a] = std::max(0, low[a] - kMostHops), last[a] = std::min(end, high[a] + kMostHops);
+  }
+  const Index rows = last[1] - first[1] + 1, layer = rows + 2;
+  const auto row = [&](Index k) { return std::size_t(1 + layer * (k - first[2] + 1)); };
+  std::vector<Row> reached(row(last[2] + 2)), before;
+  for (Index w = window(low); w <= window(high); ++w) {
+    std::fill(reached.begin(), reached.end(), 0);
+    for (Index k = first[2]; k <= last[2]; ++k)
+      std::copy_n(at_cut_.begin() + std::ptrdiff_t(at(w, first[1], k)), rows, reached.begin() + std::ptrdiff_t(row(k)));
+    for (Index hops = 1; hops < kMostHops; ++hops) {
+      before = reached;
+      for (Index k = first[2]; k <= last[2]; ++k)
+        arrive(at(w, first[1], k), &before[row(k)], layer, {&reached[row(k)], std::size_t(rows)});
+    }
+    for (Index k = low[2]; k <= high[2]; ++k)
+      std::copy_n(reached.begin() + std::ptrdiff_t(row(k)) + low[1] - first[1], high[1] - low[1] + 1,
+                  beside_cut_.begin() + std::ptrdiff_t(at(w, low[1], k)));
+  }
+}
+
+const Sight::View& Sight::view_of(Index sphere, Index node) {
+  if (std::size_t(sphere) >= view_.size()) view_.resize(std::size_t(sphere) + 1);
+  std::unique_ptr<View>& known = view_[std::size_t(sphere)];
+  if (known && known->node == node) return *known;
+  known = std::make_unique<View>();
+  View& view = *known;
+  view.node = node;
+  const CutGrid::Node home = grid_.node(node);
+  std::array<Rows, kMostHops + 1> reached{};
+  Rows visited{};
+  visited[around(0, 0)] = reached[0][around(0, 0)] = Row(1) << bit(home);
+  for (Index hops = 1; hops <= kMostHops; ++hops)
+    go_on(home, hops, reached[std::size_t(hops) - 1], visited, reached[std::size_t(hops)]);
+  static const std::vector<Shortest> shortest = shortest_ways();
+  for (std::size_t r = 0; r < view.detour.size(); ++r) {
+    const Index j = Index(r) % kSide - kMostHops, k = Index(r) / kSide - kMostHops;
+    view.detour[r] = {};
+    for (Index way = shortest_way({0, j, k}); way <= kMostHops; ++way)
+      for (Index detour = 0; detour <= std::min(kMostDetour, kMostHops - way); ++detour) {
+        const Row seen =
+            reached[std::size_t(way + detour)][around(j, k)] >> (bit(home) - kMostHops) & shortest[r][std::size_t(way)];
+        for (int b = 0; b < View::kBits; ++b)
+          if ((1 + detour) >> b & 1) view.detour[r][std::size_t(b)] |= seen;
+      }
+  }
+  return view;
 }
 
 Sight::Seen Sight::from(Index node) {
   const CutGrid::Node home = grid_.node(node);
-  const auto at = [](Index j, Index k) { return std::size_t(j + kMostHops + kSide * (k + kMostHops)); };
-  // Rows of edges are asked for at each hop: once from the grid is enough.
-  std::array<Rows, CutGrid::kDirections> open;
-  Rows at_cut;
+  Seen seen;
+  seen.has_cut = (beside_cut_[at(window(home), home[1], home[2])] >> bit(home) & 1) != 0;
   for (Index k = -kMostHops; k <= kMostHops; ++k)
     for (Index j = -kMostHops; j <= kMostHops; ++j) {
-      for (std::size_t d = 1; d < CutGrid::kDirections; ++d) open[d][at(j, k)] = row_at(is_open_[d], home, j, k);
-      at_cut[at(j, k)] = row_at(at_cut_, home, j, k);
-    }
-  Seen seen;
-  Rows visited{}, last{}, next{};
-  visited[at(0, 0)] = last[at(0, 0)] = Row(1) << kMostHops;
-  for (Index hops = 0;; ++hops) {
-    for (Index k = -hops; k <= hops; ++k)
-      for (Index j = -hops; j <= hops; ++j)
-        if (const Row row = last[at(j, k)]; row != 0)
-          add_spheres(home, hops, j, k, row & row_at(has_sphere_, home, j, k), seen);
-    if (hops == kMostHops) break;
-    for (Index k = -hops; k <= hops; ++k)
-      for (Index j = -hops; j <= hops; ++j) {
-        const Row row = std::exchange(last[at(j, k)], 0);
-        if (row == 0) continue;
-        seen.has_cut = seen.has_cut || (row & at_cut[at(j, k)]) != 0;
-        for (int d = 1; d < CutGrid::kDirections; ++d) {
-          const Index dx = d & 1, dy = d >> 1 & 1, dz = d >> 2;
-          const Rows& rows = open[std::size_t(d)];
-          next[at(j + dy, k + dz)] |= (row & rows[at(j, k)]) << dx;
-          next[at(j - dy, k - dz)] |= row >> dx & rows[at(j - dy, k - dz)];
+      const Row spheres = has_sphere_[at(window(home), home[1] + j, home[2] + k)] >> (bit(home) - kMostHops);
+      for (Row row = spheres & ((Row(1) << kSide) - 1); row != 0; row &= row - 1) {
+        const Index i = std::countr_zero(row) - kMostHops;
+        const Index there = grid_.at({home[0] + i, home[1] + j, home[2] + k});
+        for (const Index sphere : grid_.spheres_at(there)) {
+          // The way from the sphere is the way to it.
+          const auto& bits = view_of(sphere, there).detour[std::size_t(kMostHops - j + kSide * (kMostHops - k))];
+          Index detour = 0;
+          for (int b = 0; b < View::kBits; ++b) detour |= Index(bits[std::size_t(b)] >> (kMostHops - i) & 1) << b;
+          if (detour > 0) seen.sphere.push_back({sphere, detour - 1});
         }
       }
-    for (Index k = -hops - 1; k <= hops + 1; ++k)
-      for (Index j = -hops - 1; j <= hops + 1; ++j) {
-        Row& reached = next[at(j, k)];
-        last[at(j, k)] = reached & ~visited[at(j, k)];
-        visited[at(j, k)] |= reached, reached = 0;
-      }
-  }
+    }
   std::sort(seen.sphere.begin(), seen.sphere.end(),
             [](const Seen::Sphere& a, const Seen::Sphere& b) { return a.sphere < b.sphere; });
   return seen;

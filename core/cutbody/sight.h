@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "core/cutbody/cut_grid.h"
@@ -9,7 +11,8 @@
 namespace ctpm::cutbody {
 
 /// What the nodes of a grid see of each other along its edges, around which no surface goes. A row of nodes along the
-/// grid's first axis is a row of bits, so that all ways along a row are followed at once.
+/// grid's first axis is a row of bits, so that all ways along a row are followed at once; and the ways are those from
+/// the spheres, which are far fewer than the nodes that look at them.
 class Sight {
  public:
   using Index = CutGrid::Index;
@@ -38,31 +41,51 @@ class Sight {
   Seen from(Index node);
 
  private:
-  static constexpr Index kSide = 2 * kMostHops + 1;
-  /// The nodes around one: a bit for each along the first axis.
+  /// Nodes in a row along the first axis, a bit for each.
   using Row = std::uint32_t;
-  using Rows = std::array<Row, std::size_t(kSide* kSide)>;
-  /// A bit for each node, in rows that begin and end with kMostHops bits beside the grid.
-  using Bits = std::vector<std::uint64_t>;
+  static constexpr Index kSide = 2 * kMostHops + 1;  ///< of those that may be seen, along each axis
+  /// Windows of so many nodes begin every 8 nodes of a row, kMostHops before the grid's first: so one of them has all
+  /// that a node may see along its row.
+  static constexpr Index kWindow = 32, kStride = 8;
+  static_assert(kSide + kStride - 1 <= kWindow);
+  /// There are so many empty rows beside the grid.
+  static constexpr Index kBeside = kMostHops + 1;
+  /// A bit for each node: the rows of a window lie next to each other along the second axis.
+  using Bits = std::vector<Row>;
+  /// Rows around one, and an empty one on each side.
+  static constexpr Index kRows = 2 * kBeside + 1;
+  using Rows = std::array<Row, std::size_t(kRows* kRows)>;
+  static std::size_t around(Index j, Index k) { return std::size_t(j + kBeside + kRows * (k + kBeside)); }
 
-  std::size_t word(CutGrid::Node n) const {
-    return words_ * (std::size_t(n[1]) + std::size_t(grid_.extent()[1]) * std::size_t(n[2])) +
-           std::size_t(n[0] + kMostHops) / 64;
+  /// The window of a node and what it may see, and the node's bit in it.
+  static Index window(CutGrid::Node n) { return n[0] / kStride; }
+  static Index bit(CutGrid::Node n) { return n[0] % kStride + kMostHops; }
+  std::size_t at(Index window, Index j, Index k) const {
+    return std::size_t(j + kBeside + rows_ * (k + kBeside + layers_ * window));
   }
-  static std::uint64_t bit(CutGrid::Node n) { return std::uint64_t(1) << (std::size_t(n[0] + kMostHops) % 64); }
-  void set(Bits& bits, CutGrid::Node n, bool value) {
-    std::uint64_t& w = bits[word(n)];
-    w = value ? w | bit(n) : w & ~bit(n);
-  }
-  Row row_at(const Bits& bits, CutGrid::Node home, Index j, Index k) const;
-  void add_spheres(CutGrid::Node home, Index hops, Index j, Index k, Row row, Seen& seen) const;
+  void set(Bits& bits, CutGrid::Node n, bool value);
+  void arrive(std::size_t first, const Row* last, Index layer, std::span<Row> found) const;
+  void go_on(CutGrid::Node home, Index hops, const Rows& last, Rows& visited, Rows& next) const;
+  void find_beside_cut(CutGrid::NodeBox changed);
+
+  /// The nodes that are seen from one: rows around it, whose bits are those of 1 + the detour to each; 0: it is not
+  /// seen.
+  struct View {
+    static constexpr int kBits = 3;
+    static_assert(1 + kMostDetour < 1 << kBits);
+    Index node;
+    std::array<std::array<Row, std::size_t(kBits)>, std::size_t(kSide* kSide)> detour;
+  };
+  const View& view_of(Index sphere, Index node);
 
   const CutGrid& grid_;
-  std::size_t words_;  ///< of a row
+  Index rows_, layers_, windows_;
   std::array<Bits, CutGrid::kDirections>
-      is_open_;  ///< of edges, at their lower nodes: both ends are in the same tissue
-  Bits at_cut_;  ///< a cut crosses an edge of the node
+      is_open_;      ///< of edges, at their lower nodes: both ends are in the same tissue
+  Bits at_cut_;      ///< a cut crosses an edge of the node
+  Bits beside_cut_;  ///< Seen::has_cut of the eight nodes for which a window is
   Bits has_sphere_;
+  std::vector<std::unique_ptr<View>> view_;  ///< of spheres; null: it is not known
 };
 
 }  // namespace ctpm::cutbody

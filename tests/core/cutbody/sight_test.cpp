@@ -1,0 +1,102 @@
+// What the nodes of a cut organ's grid see of each other.
+
+#include "core/cutbody/sight.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "core/cutting/swept_surface.h"
+#include "tests/core/blade_blocks.h"
+#include "tests/core/skinned_block.h"
+
+namespace ctpm {
+namespace {
+
+using cutbody::CutGrid;
+using cutbody::Sight;
+using Index = CutGrid::Index;
+
+/// Edges of the shortest way to each node in tissue, found from neighbour to neighbour; -1: it is more than are seen.
+std::vector<Index> ways_from(const CutGrid& grid, Index node) {
+  std::vector<Index> way(std::size_t(grid.count()), -1), reached{node};
+  way[std::size_t(node)] = 0;
+  for (std::size_t next = 0; next < reached.size(); ++next) {
+    const Index from = reached[next];
+    if (way[std::size_t(from)] == Sight::kMostHops) break;
+    const CutGrid::Node n = grid.node(from);
+    for (int d = 1; d < CutGrid::kDirections; ++d)
+      for (const int sign : {1, -1}) {
+        const CutGrid::Node to{n[0] + sign * (d & 1), n[1] + sign * (d >> 1 & 1), n[2] + sign * (d >> 2)};
+        if (!grid.contains(to) || !grid.in_tissue(grid.at(to)) || way[std::size_t(grid.at(to))] >= 0) continue;
+        if (grid.is_parted(sign > 0 ? from : grid.at(to), d)) continue;
+        way[std::size_t(grid.at(to))] = way[std::size_t(from)] + 1, reached.push_back(grid.at(to));
+      }
+  }
+  return way;
+}
+
+bool is_at_cut(const CutGrid& grid, Index node) {
+  const CutGrid::Node n = grid.node(node);
+  for (int d = 1; d < CutGrid::kDirections; ++d) {
+    const CutGrid::Node up{n[0] + (d & 1), n[1] + (d >> 1 & 1), n[2] + (d >> 2)},
+        down{n[0] - (d & 1), n[1] - (d >> 1 & 1), n[2] - (d >> 2)};
+    if ((grid.contains(up) && grid.is_severed(node, d)) || (grid.contains(down) && grid.is_severed(grid.at(down), d)))
+      return true;
+  }
+  return false;
+}
+
+/// The same as Sight finds, node by node.
+Sight::Seen seen_from(const CutGrid& grid, Index node) {
+  const std::vector<Index> way = ways_from(grid, node);
+  const CutGrid::Node home = grid.node(node);
+  Sight::Seen seen;
+  for (Index i = 0; i < grid.count(); ++i) {
+    if (way[std::size_t(i)] < 0) continue;
+    seen.has_cut = seen.has_cut || (way[std::size_t(i)] < Sight::kMostHops && is_at_cut(grid, i));
+    Index up = 0, down = 0;
+    for (std::size_t a = 0; a < 3; ++a)
+      up = std::max(up, grid.node(i)[a] - home[a]), down = std::max(down, home[a] - grid.node(i)[a]);
+    const Index detour = way[std::size_t(i)] - up - down;
+    if (detour > Sight::kMostDetour) continue;
+    for (const Index sphere : grid.spheres_at(i)) seen.sphere.push_back({sphere, detour});
+  }
+  std::sort(seen.sphere.begin(), seen.sphere.end(), [](const auto& a, const auto& b) { return a.sphere < b.sphere; });
+  return seen;
+}
+
+/// Of some nodes all over the tissue, the number that see anything else than they should.
+int count_wrong(Sight& sight, const CutGrid& grid) {
+  int wrong = 0;
+  for (Index i = 0; i < grid.count(); i += 3)
+    if (grid.in_tissue(i)) wrong += !(sight.from(i) == seen_from(grid, i));
+  return wrong;
+}
+
+TEST(Sight, NodesSeeWhatIsJoinedToThemWhileACutGrows) {
+  const Model model = testing::make_skinned_block(7, 5, 5, network::Structure::ctpm, 0.003);
+  CutGrid grid(model, 0);
+  Sight sight(grid);
+  EXPECT_EQ(count_wrong(sight, grid), 0) << "before a cut";
+  State state = rest_state(model);
+  cutting::NewlySwept newly;
+  newly.fill(1), newly.back() = 0;
+  const auto front = [](double y) { return testing::straight_front({0.0013, y, 0.011}, {0.004, y, 0.06}); };
+  (void)grid.take_changed();
+  int changes = 0;
+  for (int i = 0; i < 24; ++i) {
+    cutting::add_swept(state, front(-0.05 + 0.004 * i), front(-0.05 + 0.004 * (i + 1)), newly);
+    if (!grid.update(state)) continue;
+    sight.update(grid.take_changed());
+    if (++changes % 6 != 0) continue;
+    EXPECT_EQ(count_wrong(sight, grid), 0) << "row " << i;
+  }
+  EXPECT_GT(changes, 6);
+  EXPECT_TRUE(grid.anything_cut());
+}
+
+}  // namespace
+}  // namespace ctpm
