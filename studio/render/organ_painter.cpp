@@ -7,6 +7,8 @@
 namespace ctpm::render {
 namespace {
 
+constexpr double kReliefWidth = 0.022;  // of the shades in a section, against the organ's size
+
 /// Of the outermost layer where it is cut, as light: the lighter of the organ's colours, paler as fibrous
 /// tissue is.
 Vec3 rind_colour(const OrganLook& look) {
@@ -40,6 +42,7 @@ Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
                        {},
                        {},
                        0,
+                       0,
                        false,
                        scene.model->organs[i].spacing / 3});
     Organ& organ = organs_.back();
@@ -48,18 +51,21 @@ Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
       array->attribute(gl, 0, 3, 0, kOrganVertexFloats), array->attribute(gl, 1, 3, 3, kOrganVertexFloats);
       array->attribute(gl, 2, 3, 6, kOrganVertexFloats), array->attribute(gl, 3, 4, 9, kOrganVertexFloats);
     }
-    add_depth(gl, organ, scene.model->surfaces[i], scene.looks[i]);
+    if (!scene.looks[i].layers.empty()) add_depth(gl, organ, scene.model->surfaces[i], scene.looks[i]);
   }
   return Done{};
 }
 
-/// The texture that tells how deep a place of a layered organ is.
+/// The texture that tells how deep a place of an organ is: for its layers, and for the shades of sections.
 void OrganPainter::add_depth(const Gl& gl, Organ& organ, const Surface& surface, const OrganLook& look) {
-  if (look.layers.empty() || surface.triangle.empty()) return;
-  double thinnest = look.layers.front().to_depth;
-  for (std::size_t i = 1; i < look.layers.size(); ++i)
-    thinnest = std::min(thinnest, look.layers[i].to_depth - look.layers[i - 1].to_depth);
-  organ.depth = DepthField(surface, look.layers.back().to_depth, thinnest);
+  if (organ.depth_texture || surface.triangle.empty()) return;
+  organ.relief_width = kReliefWidth * bounds_of(surface.vertex).diagonal();
+  double thinnest = organ.relief_width, last = 0;
+  for (const LayerLook& layer : look.layers) {
+    thinnest = std::min(thinnest, layer.to_depth - last);
+    last = layer.to_depth;
+  }
+  organ.depth = DepthField(surface, last + 3 * organ.relief_width, thinnest);
   gl.GenTextures(1, &organ.depth_texture), gl.BindTexture(GL_TEXTURE_3D, organ.depth_texture);
   for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
     gl.TexParameteri(GL_TEXTURE_3D, filter, GL_LINEAR);
@@ -84,9 +90,12 @@ void OrganPainter::update(const Gl& gl, const State& state) {
   }
 }
 
-void OrganPainter::update_sections(const Gl& gl, const State& state, const DrawOptions& options, double line_width) {
+void OrganPainter::update_sections(const Gl& gl, const SceneView& scene, const State& state, const DrawOptions& options,
+                                   double line_width) {
   if (!options.cutaway.is_on() || options.view == View::both) return;
-  for (Organ& organ : organs_) {
+  for (std::size_t i = 0; i < organs_.size(); ++i) {
+    Organ& organ = organs_[i];
+    add_depth(gl, organ, scene.model->surfaces[i], scene.looks[i]);
     organ.section.update(state, options.cutaway, organ.cut.surface(), organ.cut.outer_triangle_count(),
                          organ.mesh.positions(), line_width);
     organ.section_array.set_stream(gl, organ.section.vertices());
@@ -175,8 +184,8 @@ void OrganPainter::draw(const Gl& gl, const SceneView& scene, const DrawOptions&
 
 void OrganPainter::set_layers(const Gl& gl, const Program& program, const Organ& organ, const OrganLook& look) {
   const std::size_t count = organ.depth_texture ? std::min(look.layers.size(), kMostLayerLooks) : 0;
-  program.set("layer_count", int(count));
-  if (count == 0) return;
+  program.set("layer_count", int(count)), program.set("relief_width", 0.0);
+  if (!organ.depth_texture) return;
   gl.ActiveTexture(GL_TEXTURE0), gl.BindTexture(GL_TEXTURE_3D, organ.depth_texture);
   program.set("depth_at_rest", 0), program.set("depth_low", organ.depth.low),
       program.set("depth_size", organ.depth.size);
@@ -203,7 +212,7 @@ void OrganPainter::draw_section(const Gl& gl, const Organ& organ, const OrganLoo
   const Program& inside = programs_[std::size_t(OrganPass::inside)][false];
   set_look(inside, look, options);
   set_layers(gl, inside, organ, look);
-  inside.set("blood", 0.0);
+  inside.set("blood", 0.0), inside.set("relief_width", organ.relief_width);
   gl.BindVertexArray(organ.section_array.id);
   gl.DrawElements(GL_TRIANGLES, organ.section_array.index_count, GL_UNSIGNED_INT, nullptr);
   gl.Disable(GL_STENCIL_TEST);

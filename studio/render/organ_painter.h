@@ -28,7 +28,8 @@ class OrganPainter {
   /// Deforms and splits the surfaces according to the state.
   void update(const Gl& gl, const State& state);
   /// Lays the plane of a cutaway through the organs as update() left them. `line_width` [m]: of the lines of cuts.
-  void update_sections(const Gl& gl, const State& state, const DrawOptions& options, double line_width);
+  void update_sections(const Gl& gl, const SceneView& scene, const State& state, const DrawOptions& options,
+                       double line_width);
   void add_shadows(GroundShadow& shadow, const Cutaway& cutaway) const;
 
   /// The programs that draw() will use. The caller sets the light of each first.
@@ -49,8 +50,9 @@ class OrganPainter {
     VertexArray array;
     Section section;
     VertexArray section_array;
-    DepthField depth;  ///< empty without layers
+    DepthField depth;  ///< empty without layers until there is a section
     GLuint depth_texture = 0;
+    double relief_width = 0;  ///< of the shades in a section [m]
     bool is_set = false;
     double ooze = 0;  ///< how far blood oozes out of a cut: as far as triangles reach where nothing is cut [m]
   };

@@ -19,7 +19,7 @@ namespace ctpm::render {
 namespace {
 
 constexpr double kGroundExtent = 1.45;  // side of the ground that can be shaded, against the scene's size
-constexpr double kLineWidth = 0.004;    // of the line of a cut in a section, against the scene's size
+constexpr double kLineWidth = 0.006;    // of the line of a cut in a section, against the scene's size
 
 Vec3 unit(Vec3 v) { return v / norm(v); }
 
@@ -441,7 +441,7 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
   p.draw_tools(state, options);
   p.draw_obstacles(state, options);
   if (options.view == View::surface || options.view == View::both) {
-    p.organs.update_sections(gl, state, options, kLineWidth * p.size);
+    p.organs.update_sections(gl, p.scene, state, options, kLineWidth * p.size);
     for (const Program* program : p.organs.programs(options)) p.set_light(*program, state, options);
     p.organs.draw(gl, p.scene, options);
   }

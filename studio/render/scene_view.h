@@ -24,6 +24,7 @@ using Colour = std::array<double, 3>;
 struct LayerLook {
   double to_depth = 0;  ///< it ends here, below the surface at rest [m]
   Colour colour{};
+  friend bool operator==(const LayerLook&, const LayerLook&) = default;
 };
 
 /// Most layers that an organ's picture tells apart; the deeper ones look like the inside.
