@@ -9,7 +9,7 @@
 namespace ctpm::render {
 namespace {
 
-constexpr double kMostAlong = 160;  // values along the longest side
+constexpr double kMostAlong = 80;  // values along the longest side
 
 /// Whether a line along z through (x, y) meets a triangle; of two triangles with a common edge it meets one.
 bool meets(const std::array<Vec3, 3>& corner, double x, double y) {

@@ -414,6 +414,10 @@ Result<std::unique_ptr<Renderer>> Renderer::create(int width, int height, SceneV
   for (std::size_t i = scene.looks.size(); i < scene.model->organs.size(); ++i)
     scene.looks.push_back(look_of(scene.model->organs[i].name));
 
+  if (!scene.cuts) {
+    scene.cuts = std::make_shared<std::vector<CutSurface>>();
+    for (std::size_t i = 0; i < scene.model->surfaces.size(); ++i) scene.cuts->emplace_back(*scene.model, i);
+  }
   auto context = GlContext::create();
   if (!context) return context.errors();
   auto parts = std::make_unique<Parts>();

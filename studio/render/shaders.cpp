@@ -171,11 +171,15 @@ vec3 tissue_colour(float depth, float rind) {
 }
 // A section is no flat picture: its rim turns away, and each layer lies a little below the one around it, whose edge
 // catches the light.
+float fall(float depth, float width) {
+  float left = max(1.0 - depth / width, 0.0);
+  return left * left;
+}
 float section_shade(float depth) {
-  float soft = 0.7 * fwidth(depth) + 1e-5, shade = 1.0 - 0.5 * exp(-max(depth, 0.0) / (0.4 * relief_width));
+  float soft = 0.7 * fwidth(depth) + 1e-5, shade = 1.0 - 0.5 * fall(max(depth, 0.0), relief_width);
   for (int i = 0; i < layer_count; ++i) {
     float below = depth - layer_end[i], is_below = smoothstep(-soft, soft, below);
-    shade *= 1.0 + mix(0.18, -0.45, is_below) * exp(-abs(below) / (relief_width * mix(0.25, 1.0, is_below)));
+    shade *= 1.0 + mix(0.18, -0.45, is_below) * fall(abs(below), relief_width * mix(0.5, 1.0, is_below));
   }
   return shade;
 }
