@@ -18,7 +18,7 @@ class Inset {
     section,  ///< the tissue opened at the tool, along the picture's plane
   };
 
-  /// Of a picture of this size. Errors: no OpenGL 3.3.
+  /// Of a picture of this size; `scene` is that of the picture's Renderer. Errors: no OpenGL 3.3.
   static Result<Inset> create(Kind kind, const render::PictureSize& picture, const render::SceneView& scene);
 
   /// Draws it into the picture, as number `place` of those above each other in its lower right corner. `draw` is how

@@ -88,14 +88,14 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
   const int height = size.height - reel.strip_height;
   const Result<std::vector<Inset::Kind>> insets = insets_of(options.inset);
   if (!insets) return insets.errors();
-  for (const Inset::Kind kind : *insets) {
-    Result<Inset> inset = Inset::create(kind, {size.width, height}, view);
-    if (!inset) return inset.errors();
-    reel.insets.push_back(std::move(*inset));
-  }
   Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(size.width, height, std::move(view));
   if (!renderer) return renderer.errors();
   reel.renderer = std::move(*renderer);
+  for (const Inset::Kind kind : *insets) {
+    Result<Inset> inset = Inset::create(kind, {size.width, height}, reel.renderer->scene());
+    if (!inset) return inset.errors();
+    reel.insets.push_back(std::move(*inset));
+  }
   reel.overlay = std::make_unique<render::Overlay>(size.width, height);
   const std::string title = reel.film->scene().name + ": " + std::filesystem::path(session.path()).stem().string();
   reel.moments = told_moments(*all, title, model.tick, ticks.range.from);

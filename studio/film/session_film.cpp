@@ -91,6 +91,7 @@ Result<Done> SessionFilm::start_at(std::int64_t tick) {
     if (t % plot_every_ == 0)
       overlay_.history.push_back({double(t) * model.tick, norm(record.tool_force), norm(record.second.tool_force)});
   }
+  if (earlier && !earlier->empty()) show_loads(earlier->back().of_hand(0), earlier->back().of_hand(1));
   const Result<std::vector<recordings::Event>> events = reader_.events();
   if (!events) return events.errors();
   overlay_.loose = recordings::pieces_came_loose(*events, tick);
@@ -136,21 +137,25 @@ void SessionFilm::look_back(const std::vector<recordings::Event>& events, std::i
   }
 }
 
+void SessionFilm::show_loads(const stepping::HandReport& first, const stepping::HandReport& second) {
+  const auto load_of = [](const stepping::HandReport& report) {
+    return render::HandLoad{norm(report.tool_force), report.depth};
+  };
+  overlay_.hand = load_of(first);
+  if (overlay_.second) overlay_.second = load_of(second);
+}
+
 /// Updates the overlay from the last simulated tick.
 void SessionFilm::take_tick() {
   overlay_.tick = cursor_.tick();
   overlay_.time = double(overlay_.tick) * model().tick;
-  const auto load_of = [&](const stepping::HandReport& report) {
-    return render::HandLoad{norm(report.tool_force), report.depth};
-  };
-  overlay_.hand = load_of(cursor_.report());
-  if (overlay_.second) overlay_.second = load_of(cursor_.report().second);
+  show_loads(cursor_.report(), cursor_.report().second);
+  overlay_.slip = cursor_.record().slip;
   const Inputs& inputs = cursor_.record().inputs;
   keep_worst(overlay_.hand.force, holds_blade(inputs) ? 0 : overlay_.hand.depth);
   if (overlay_.second) keep_worst(overlay_.second->force, holds_blade(inputs.second) ? 0 : overlay_.second->depth);
   overlay_.loose += cursor_.report().came_loose;
   overlay_.inside_out = cursor_.report().inverted;
-  overlay_.slip = cursor_.record().slip;
   keep_inputs(cursor_.record().inputs);
   std::vector<render::ForcePoint>& history = overlay_.history;
   if (overlay_.tick % plot_every_ == 0)

@@ -63,6 +63,7 @@ class SessionFilm {
   Result<Done> begin();
   Result<Done> start_at(std::int64_t tick);
   Result<Done> leap_towards(std::int64_t tick);
+  void show_loads(const stepping::HandReport& first, const stepping::HandReport& second);
   void take_tick();
   void keep_inputs(const Inputs& inputs);
   void show_cut_depth();

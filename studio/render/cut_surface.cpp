@@ -36,6 +36,7 @@ struct CutSurface::Parts {
   std::vector<std::uint8_t> is_lip;
   std::vector<float> rind;
   Shading of_whole, at_rest;
+  std::uint64_t changes = 0;
 };
 
 /// Outer vertices at whose place the wall has one too.
@@ -88,11 +89,13 @@ CutSurface::CutSurface(CutSurface&&) noexcept = default;
 bool CutSurface::update(const State& state) {
   Parts& parts = *parts_;
   if (!parts.body || !parts.body->update(state)) return false;
+  ++parts.changes;
   parts.is_lip.clear(), parts.rind.clear(), parts.at_rest = {};
   if (parts.body->is_cut()) parts.find_lips(), parts.find_rind(), parts.find_shading();
   return true;
 }
 
+std::uint64_t CutSurface::changes() const { return parts_->changes; }
 const Surface& CutSurface::surface() const { return parts_->body ? parts_->body->surface() : parts_->whole; }
 std::size_t CutSurface::outer_triangle_count() const {
   return parts_->body ? parts_->body->outer_triangle_count() : parts_->whole.triangle.size();

@@ -27,6 +27,9 @@ class CutSurface {
   /// Takes over the cuts of `state`. Returns whether surface() changed.
   bool update(const State& state);
 
+  /// How often surface() has changed.
+  std::uint64_t changes() const;
+
   /// Outer triangles first, then the wall's. The wall has its own vertices, so that normals break at the cut edge.
   /// Vertices are at rest, where both sides of a cut coincide; deform_surface() opens the cut.
   const Surface& surface() const;

@@ -9,7 +9,18 @@
 namespace ctpm::render {
 namespace {
 
-constexpr double kMostAlong = 160;  // values along the longest side
+constexpr double kMostAlong = 80;  // values along the longest side
+
+/// Whether a line along z through (x, y) meets a triangle; of two triangles with a common edge it meets one.
+bool meets(const std::array<Vec3, 3>& corner, double x, double y) {
+  bool is_inside = false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 &p = corner[i], &q = corner[(i + 1) % 3], &a = p.y < q.y ? p : q, &b = p.y < q.y ? q : p;
+    if ((a.y > y) == (b.y > y)) continue;
+    is_inside ^= x < a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y));
+  }
+  return is_inside;
+}
 
 }  // namespace
 
@@ -43,6 +54,35 @@ DepthField::DepthField(const Surface& surface, double reach, double detail) {
           if (const double square = dot(apart, apart); square < double(least) * double(least))
             least = float(std::sqrt(square));
         }
+  }
+  find_outside(surface, step);
+}
+
+/// Makes the values outside negative: where a line along z has left the surface as often as it has entered it.
+void DepthField::find_outside(const Surface& surface, double step) {
+  std::vector<std::vector<double>> crossed(std::size_t(count[0]) * std::size_t(count[1]));  // [m] along z
+  const auto middle = [&](double begin, int i) { return begin + step * (i + 0.5); };
+  for (const auto& t : surface.triangle) {
+    const std::array<Vec3, 3> corner{surface.vertex[std::size_t(t[0])], surface.vertex[std::size_t(t[1])],
+                                     surface.vertex[std::size_t(t[2])]};
+    const Vec3 n = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    if (n.z == 0) continue;
+    const auto [left, right] = std::minmax({corner[0].x, corner[1].x, corner[2].x});
+    const auto [front, back] = std::minmax({corner[0].y, corner[1].y, corner[2].y});
+    for (int j = int((front - low.y) / step); j <= int((back - low.y) / step); ++j)
+      for (int i = int((left - low.x) / step); i <= int((right - low.x) / step); ++i)
+        if (const double x = middle(low.x, i), y = middle(low.y, j); meets(corner, x, y))
+          crossed[std::size_t(i + count[0] * j)].push_back(corner[0].z -
+                                                           (n.x * (x - corner[0].x) + n.y * (y - corner[0].y)) / n.z);
+  }
+  for (std::size_t column = 0; column < crossed.size(); ++column) {
+    std::vector<double>& at = crossed[column];
+    if (at.size() % 2 == 1) continue;  // the surface is open there
+    std::sort(at.begin(), at.end());
+    for (int k = 0; k < count[2]; ++k) {
+      const auto below = std::lower_bound(at.begin(), at.end(), middle(low.z, k)) - at.begin();
+      if (float& value = depth[column + crossed.size() * std::size_t(k)]; below % 2 == 0) value = -value;
+    }
   }
 }
 

@@ -7,6 +7,8 @@
 namespace ctpm::render {
 namespace {
 
+constexpr double kReliefWidth = 0.018;  // of the shades in a section, against the organ's size
+
 /// Of the outermost layer where it is cut, as light: the lighter of the organ's colours, paler as fibrous
 /// tissue is.
 Vec3 rind_colour(const OrganLook& look) {
@@ -32,34 +34,31 @@ Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
   count_ = *count;
   drawn_ = std::make_unique<contact::DrawnSurfaces>(*scene.model);
   rest_map_ = std::make_unique<cutting::RestMap>(*scene.model);
+  cuts_ = scene.cuts;
   for (std::size_t i = 0; i < scene.model->surfaces.size(); ++i) {
-    organs_.push_back({CutSurface(*scene.model, i),
-                       {},
-                       {},
-                       Section(*scene.model, *rest_map_, i),
-                       {},
-                       {},
-                       0,
-                       false,
-                       scene.model->organs[i].spacing / 3});
+    organs_.push_back(
+        {i, {}, {}, Section(*scene.model, *rest_map_, i), {}, {}, 0, 0, {}, scene.model->organs[i].spacing / 3});
     Organ& organ = organs_.back();
     for (VertexArray* array : {&organ.array, &organ.section_array}) {
       array->create(gl);
       array->attribute(gl, 0, 3, 0, kOrganVertexFloats), array->attribute(gl, 1, 3, 3, kOrganVertexFloats);
       array->attribute(gl, 2, 3, 6, kOrganVertexFloats), array->attribute(gl, 3, 4, 9, kOrganVertexFloats);
     }
-    add_depth(gl, organ, scene.model->surfaces[i], scene.looks[i]);
+    if (!scene.looks[i].layers.empty()) add_depth(gl, organ, scene.model->surfaces[i], scene.looks[i]);
   }
   return Done{};
 }
 
-/// The texture that tells how deep a place of a layered organ is.
+/// The texture that tells how deep a place of an organ is: for its layers, and for the shades of sections.
 void OrganPainter::add_depth(const Gl& gl, Organ& organ, const Surface& surface, const OrganLook& look) {
-  if (look.layers.empty() || surface.triangle.empty()) return;
-  double thinnest = look.layers.front().to_depth;
-  for (std::size_t i = 1; i < look.layers.size(); ++i)
-    thinnest = std::min(thinnest, look.layers[i].to_depth - look.layers[i - 1].to_depth);
-  organ.depth = DepthField(surface, look.layers.back().to_depth, thinnest);
+  if (organ.depth_texture || surface.triangle.empty()) return;
+  organ.relief_width = kReliefWidth * bounds_of(surface.vertex).diagonal();
+  double thinnest = organ.relief_width, last = 0;
+  for (const LayerLook& layer : look.layers) {
+    thinnest = std::min(thinnest, layer.to_depth - last);
+    last = layer.to_depth;
+  }
+  organ.depth = DepthField(surface, last + organ.relief_width, thinnest);
   gl.GenTextures(1, &organ.depth_texture), gl.BindTexture(GL_TEXTURE_3D, organ.depth_texture);
   for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
     gl.TexParameteri(GL_TEXTURE_3D, filter, GL_LINEAR);
@@ -73,21 +72,24 @@ void OrganPainter::add_depth(const Gl& gl, Organ& organ, const Surface& surface,
 void OrganPainter::update(const Gl& gl, const State& state) {
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     Organ& organ = organs_[i];
-    const bool changed = organ.cut.update(state);
-    const Surface& surface = organ.cut.surface();
-    if (changed || !organ.is_set)
-      organ.mesh.set_surface(surface, nearness_to_lips(surface, organ.cut.is_lip(), organ.ooze), organ.cut.rind(),
-                             organ.cut.at_rest());
-    organ.is_set = true;
+    CutSurface& cut = (*cuts_)[i];
+    cut.update(state);  // for another Renderer it may be as it should be already
+    const Surface& surface = cut.surface();
+    if (organ.seen != cut.changes())
+      organ.mesh.set_surface(surface, nearness_to_lips(surface, cut.is_lip(), organ.ooze), cut.rind(), cut.at_rest());
+    organ.seen = cut.changes();
     organ.mesh.update(*drawn_, i, surface, state);
     organ.array.set_stream(gl, organ.mesh.vertices());
   }
 }
 
-void OrganPainter::update_sections(const Gl& gl, const State& state, const DrawOptions& options, double line_width) {
+void OrganPainter::update_sections(const Gl& gl, const SceneView& scene, const State& state, const DrawOptions& options,
+                                   double line_width) {
   if (!options.cutaway.is_on() || options.view == View::both) return;
-  for (Organ& organ : organs_) {
-    organ.section.update(state, options.cutaway, organ.cut.surface(), organ.cut.outer_triangle_count(),
+  for (std::size_t i = 0; i < organs_.size(); ++i) {
+    Organ& organ = organs_[i];
+    add_depth(gl, organ, scene.model->surfaces[i], scene.looks[i]);
+    organ.section.update(state, options.cutaway, cut_of(organ).surface(), cut_of(organ).outer_triangle_count(),
                          organ.mesh.positions(), line_width);
     organ.section_array.set_stream(gl, organ.section.vertices());
     organ.section_array.set_indices(gl, organ.section.indices());
@@ -96,7 +98,7 @@ void OrganPainter::update_sections(const Gl& gl, const State& state, const DrawO
 
 void OrganPainter::add_shadows(GroundShadow& shadow, const Cutaway& cutaway) const {
   for (const Organ& organ : organs_)
-    shadow.add(organ.cut.surface(), organ.mesh.positions(), organ.cut.outer_triangle_count(), cutaway);
+    shadow.add(cut_of(organ).surface(), organ.mesh.positions(), cut_of(organ).outer_triangle_count(), cutaway);
 }
 
 std::vector<const Program*> OrganPainter::programs(const DrawOptions& options) const {
@@ -120,9 +122,9 @@ void OrganPainter::set_look(const Program& program, const OrganLook& look, const
 
 /// Sorting here is cheaper than letting the software pipeline transform every triangle once for each pass.
 OrganPainter::Order OrganPainter::sort_triangles(const Organ& organ, Vec3 eye, bool needs_averted) {
-  const Surface& surface = organ.cut.surface();
+  const Surface& surface = cut_of(organ).surface();
   const std::vector<Vec3>& p = organ.mesh.positions();
-  const std::size_t outer = organ.cut.outer_triangle_count();
+  const std::size_t outer = cut_of(organ).outer_triangle_count();
   indices_.clear(), averted_.clear();
   const auto add = [&](std::vector<std::uint32_t>& list, const std::array<std::int32_t, 3>& t) {
     for (const std::int32_t v : t) list.push_back(std::uint32_t(v));
@@ -175,8 +177,8 @@ void OrganPainter::draw(const Gl& gl, const SceneView& scene, const DrawOptions&
 
 void OrganPainter::set_layers(const Gl& gl, const Program& program, const Organ& organ, const OrganLook& look) {
   const std::size_t count = organ.depth_texture ? std::min(look.layers.size(), kMostLayerLooks) : 0;
-  program.set("layer_count", int(count));
-  if (count == 0) return;
+  program.set("layer_count", int(count)), program.set("relief_width", 0.0);
+  if (!organ.depth_texture) return;
   gl.ActiveTexture(GL_TEXTURE0), gl.BindTexture(GL_TEXTURE_3D, organ.depth_texture);
   program.set("depth_at_rest", 0), program.set("depth_low", organ.depth.low),
       program.set("depth_size", organ.depth.size);
@@ -203,7 +205,7 @@ void OrganPainter::draw_section(const Gl& gl, const Organ& organ, const OrganLoo
   const Program& inside = programs_[std::size_t(OrganPass::inside)][false];
   set_look(inside, look, options);
   set_layers(gl, inside, organ, look);
-  inside.set("blood", 0.0);
+  inside.set("blood", 0.0), inside.set("relief_width", organ.relief_width);
   gl.BindVertexArray(organ.section_array.id);
   gl.DrawElements(GL_TRIANGLES, organ.section_array.index_count, GL_UNSIGNED_INT, nullptr);
   gl.Disable(GL_STENCIL_TEST);

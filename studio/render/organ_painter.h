@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/contact/drawn_surfaces.h"
@@ -28,7 +30,8 @@ class OrganPainter {
   /// Deforms and splits the surfaces according to the state.
   void update(const Gl& gl, const State& state);
   /// Lays the plane of a cutaway through the organs as update() left them. `line_width` [m]: of the lines of cuts.
-  void update_sections(const Gl& gl, const State& state, const DrawOptions& options, double line_width);
+  void update_sections(const Gl& gl, const SceneView& scene, const State& state, const DrawOptions& options,
+                       double line_width);
   void add_shadows(GroundShadow& shadow, const Cutaway& cutaway) const;
 
   /// The programs that draw() will use. The caller sets the light of each first.
@@ -44,14 +47,15 @@ class OrganPainter {
 
  private:
   struct Organ {
-    CutSurface cut;
+    std::size_t number = 0;
     OrganMesh mesh;
     VertexArray array;
     Section section;
     VertexArray section_array;
-    DepthField depth;  ///< empty without layers
+    DepthField depth;  ///< empty without layers until there is a section
     GLuint depth_texture = 0;
-    bool is_set = false;
+    double relief_width = 0;            ///< of the shades in a section [m]
+    std::optional<std::uint64_t> seen;  ///< the changes of its surface that `mesh` has taken over
     double ooze = 0;  ///< how far blood oozes out of a cut: as far as triangles reach where nothing is cut [m]
   };
 
@@ -60,11 +64,13 @@ class OrganPainter {
   struct Order {
     std::size_t facing = 0, wall = 0, averted = 0;  ///< counts of indices
   };
+  const CutSurface& cut_of(const Organ& organ) const { return (*cuts_)[organ.number]; }
   Order sort_triangles(const Organ& organ, Vec3 eye, bool needs_averted);
 
   std::unique_ptr<contact::DrawnSurfaces> drawn_;
   std::unique_ptr<cutting::RestMap> rest_map_;
   std::vector<Organ> organs_;
+  std::shared_ptr<std::vector<CutSurface>> cuts_;  ///< one for each organ
   std::vector<std::uint32_t> indices_, averted_;
   const Program& program(OrganPass pass, const DrawOptions& options) const {
     return programs_[std::size_t(pass)][options.cutaway.is_on()];

@@ -14,7 +14,7 @@ namespace {
 
 using Ink = std::array<int, 3>;
 
-constexpr Ink kWhite{240, 243, 246}, kGrey{168, 178, 188}, kAmber{255, 190, 80}, kRed{235, 72, 60},
+constexpr Ink kWhite{240, 243, 246}, kGrey{168, 178, 188}, kAmber{255, 190, 80}, kRed{255, 150, 132},
     kBlue{110, 190, 255}, kGreen{96, 205, 140};
 constexpr int kFont = cv::FONT_HERSHEY_DUPLEX;
 constexpr int kOversample = 4;  // strokes are drawn this many times larger and averaged down

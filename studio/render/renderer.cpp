@@ -19,7 +19,7 @@ namespace ctpm::render {
 namespace {
 
 constexpr double kGroundExtent = 1.45;  // side of the ground that can be shaded, against the scene's size
-constexpr double kLineWidth = 0.004;    // of the line of a cut in a section, against the scene's size
+constexpr double kLineWidth = 0.006;    // of the line of a cut in a section, against the scene's size
 
 Vec3 unit(Vec3 v) { return v / norm(v); }
 
@@ -414,6 +414,10 @@ Result<std::unique_ptr<Renderer>> Renderer::create(int width, int height, SceneV
   for (std::size_t i = scene.looks.size(); i < scene.model->organs.size(); ++i)
     scene.looks.push_back(look_of(scene.model->organs[i].name));
 
+  if (!scene.cuts) {
+    scene.cuts = std::make_shared<std::vector<CutSurface>>();
+    for (std::size_t i = 0; i < scene.model->surfaces.size(); ++i) scene.cuts->emplace_back(*scene.model, i);
+  }
   auto context = GlContext::create();
   if (!context) return context.errors();
   auto parts = std::make_unique<Parts>();
@@ -441,7 +445,7 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
   p.draw_tools(state, options);
   p.draw_obstacles(state, options);
   if (options.view == View::surface || options.view == View::both) {
-    p.organs.update_sections(gl, state, options, kLineWidth * p.size);
+    p.organs.update_sections(gl, p.scene, state, options, kLineWidth * p.size);
     for (const Program* program : p.organs.programs(options)) p.set_light(*program, state, options);
     p.organs.draw(gl, p.scene, options);
   }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,6 +25,7 @@ using Colour = std::array<double, 3>;
 struct LayerLook {
   double to_depth = 0;  ///< it ends here, below the surface at rest [m]
   Colour colour{};
+  friend bool operator==(const LayerLook&, const LayerLook&) = default;
 };
 
 /// Most layers that an organ's picture tells apart; the deeper ones look like the inside.
@@ -42,11 +44,16 @@ struct OrganLook {
 /// The look of the tissue (liver, kidney, skin) that the organ's name contains; plain red for others.
 OrganLook look_of(std::string_view organ_name);
 
+class CutSurface;
+
 /// The scene to draw: a Model, and one surface and look for each of its organs.
 struct SceneView {
   const Model* model = nullptr;             ///< must outlive the Renderer
   std::vector<OrganLook> looks;             ///< empty: look_of() each organ's name     (organ_count)
   std::vector<Colour> sphere_colours = {};  ///< of each sphere; empty: layer_colour()  (sphere_count)
+  /// The surfaces with their cuts, which a Renderer makes if there are none. Renderers that are given another's
+  /// scene() follow a cut once for all of them; one thread at a time may use these.
+  std::shared_ptr<std::vector<CutSurface>> cuts = nullptr;
 };
 
 /// The box around everything at rest [m].

@@ -159,13 +159,29 @@ uniform float layer_end[8];  // [m], ascending
 uniform vec3 layer_colour[8];
 uniform sampler3D depth_at_rest;
 uniform vec3 depth_low, depth_size;
-vec3 tissue_colour(vec3 rest, float rind) {
+uniform float relief_width;  // [m] of the shades in a section; 0: none, as on a wall
+float depth_of(vec3 rest) { return texture(depth_at_rest, (rest - depth_low) / depth_size).r; }
+vec3 tissue_colour(float depth, float rind) {
   if (layer_count == 0) return mix(inner_colour, rind_colour, rind);
-  float depth = texture(depth_at_rest, (rest - depth_low) / depth_size).r, soft = 0.7 * fwidth(depth) + 1e-5;
+  float soft = 0.7 * fwidth(depth) + 1e-5;
   vec3 c = inner_colour;
   for (int i = layer_count - 1; i >= 0; --i)
     c = mix(layer_colour[i], c, smoothstep(layer_end[i] - soft, layer_end[i] + soft, depth));
   return c;
+}
+// A section is no flat picture: its rim turns away, and each layer lies a little below the one around it, whose edge
+// catches the light.
+float fall(float depth, float width) {
+  float left = max(1.0 - depth / width, 0.0);
+  return left * left;
+}
+float section_shade(float depth) {
+  float soft = 0.7 * fwidth(depth) + 1e-5, shade = 1.0 - 0.5 * fall(max(depth, 0.0), relief_width);
+  for (int i = 0; i < layer_count; ++i) {
+    float below = depth - layer_end[i], is_below = smoothstep(-soft, soft, below);
+    shade *= 1.0 + mix(0.18, -0.45, is_below) * fall(abs(below), relief_width * mix(0.5, 1.0, is_below));
+  }
+  return shade;
 }
 )";
 
@@ -191,12 +207,15 @@ void main() {
   const float kRough = 0.05, kStained = 0.05;
   vec3 q = bend(at_rest), m = normalize(n);
   if (dot(m, eye - p) < 0.0) m = -m;
-  vec3 base = tissue_colour(at_rest, shadow_stain_rind.z) * (1.0 + 0.16 * shadow_stain_rind.y);
+  float depth = depth_of(at_rest);
+  vec3 base = tissue_colour(depth, shadow_stain_rind.z) * (1.0 + 0.16 * shadow_stain_rind.y);
   // A fresh wall bleeds: a wet film of blood, here thicker, there thinner.
   vec4 fine = relief(q);
   float film = blood * clamp(0.34 - 0.06 * fine.a + 0.35 * shadow_stain_rind.y, 0.15, 0.8);
   base = mix(base, vec3(0.34, 0.0, 0.006), film);
-  Smooth slow = smooth_light(p, m, base, shadow_stain_rind.x, 0.55 + 0.6 * film);
+  float mirror = 0.55 + 0.6 * film;
+  if (relief_width > 0.0) base *= section_shade(depth), mirror = 0.25;  // cut flat, it would shine all over
+  Smooth slow = smooth_light(p, m, base, shadow_stain_rind.x, mirror);
 #else
   const float kRough = 0.017, kStained = 0.035;
 vec4 fine = relief(q);

@@ -13,7 +13,8 @@ namespace {
 constexpr std::array<const char*, 7> kPalette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                               "#e69f00", "#56b4e9", "#4d4d4d"};
 
-constexpr double kLeft = 62, kRight = 14, kTop = 30, kBottom = 46, kLegendRow = 17, kLegendText = 28, kEventRow = 16;
+constexpr double kLeft = 62, kRight = 14, kTop = 30, kBottom = 46, kLegendRow = 17, kLegendText = 28, kEventRow = 16,
+                 kTitleRow = 18;
 /// Of letters on narrow pages, where they are 15 pixels high, with some to spare.
 constexpr double kLetter = 8, kTitleLetter = 9.6;
 constexpr int kYTicks = 6;
@@ -132,6 +133,19 @@ double left_of(const Axis& y) {
   return std::max(kLeft, kTitle + kLetter * double(longest));
 }
 
+/// The title in lines that fit, of whole words.
+std::vector<std::string> title_lines(const Plot& plot) {
+  const auto most = std::size_t((plot.width - 4) / kTitleLetter);
+  std::vector<std::string> lines{plot.title};
+  while (lines.back().size() > most) {
+    const std::size_t end = lines.back().rfind(' ', most);
+    if (end == std::string::npos || end == 0) break;
+    std::string rest = lines.back().substr(end + 1);
+    lines.back().resize(end), lines.push_back(std::move(rest));
+  }
+  return lines;
+}
+
 /// Draws one plot.
 struct Drawing {
   const Plot& plot;
@@ -154,8 +168,11 @@ struct Drawing {
     const std::string turn = " transform=\"rotate(-90 15 " + number(0.5 * (top + bottom)) + ")\"";
     add_text(svg, 15, 0.5 * (top + bottom), "middle", "title", plot.y_title, turn);
     // A long title begins before the axis.
-    const double room = plot.width - kTitleLetter * double(plot.title.size());
-    add_text(svg, std::clamp(room, 4.0, left), 18, "start", "head", plot.title);
+    const std::vector<std::string> lines = title_lines(plot);
+    double room = left;
+    for (const std::string& text : lines) room = std::min(room, plot.width - kTitleLetter * double(text.size()));
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      add_text(svg, std::max(room, 4.0), 18 + kTitleRow * double(i), "start", "head", lines[i]);
   }
 
   void add_bands() {
@@ -302,9 +319,10 @@ std::string escape_html(const std::string& text) {
 }
 
 std::string to_svg(const Plot& plot) {
-  const int whole_height = plot.height + int(kLegendRow * legend_rows(plot)) + 6;
-  const double right = plot.width - kRight, top = kTop + (plot.events.empty() ? 0 : kEventRow),
-               bottom = plot.height - kBottom;
+  const double above = kTitleRow * double(title_lines(plot).size() - 1);
+  const int whole_height = plot.height + int(above + kLegendRow * legend_rows(plot)) + 6;
+  const double right = plot.width - kRight, top = above + kTop + (plot.events.empty() ? 0 : kEventRow),
+               bottom = above + plot.height - kBottom;
   const Range xs = plot.x_range ? Range{plot.x_range->first, plot.x_range->second} : range_of(plot, false);
   const Range ys = plot.y_range ? Range{plot.y_range->first, plot.y_range->second} : range_of(plot, true);
   const Axis y(ys.low, ys.high, plot.is_log_y, bottom, top);

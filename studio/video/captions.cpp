@@ -146,6 +146,24 @@ std::string chapter_list(const std::vector<Caption>& captions) {
   return box("chpl", list.text);
 }
 
+/// A movie's own data with a title, as iTunes writes it and players show it.
+std::string with_title(const std::string& own, std::string title) {
+  std::replace(title.begin(), title.end(), '\n', ' ');
+  const std::string name = box("\xa9nam", box("data", Bytes().u32(1).u32(0).raw(title).text));
+  const Place meta = find_box(own, 0, own.size(), "meta");
+  if (meta.at == std::string::npos) {
+    const std::string handler = box("hdlr", Bytes().u32(0).u32(0).raw("mdirappl").zeros(9).text);
+    return own + box("meta", Bytes().u32(0).raw(handler).raw(box("ilst", name)).text);
+  }
+  const std::size_t end = meta.at + meta.size;
+  const Place list = find_box(own, meta.at + 12, end, "ilst");
+  if (list.at == std::string::npos) return own;
+  const std::string before = own.substr(meta.at + 8, list.at - meta.at - 8),
+                    after = own.substr(list.at + list.size, end - list.at - list.size);
+  const std::string longer = box("ilst", own.substr(list.at + 8, list.size - 8) + name);
+  return own.substr(0, meta.at) + box("meta", before + longer + after) + own.substr(end);
+}
+
 /// How the colours of H.264 are coded: primaries, curve and matrix of BT.709, not the full range.
 std::string colour_box() { return box("colr", Bytes().raw("nclx").u16(1).u16(1).u16(1).u8(0).text); }
 
@@ -185,10 +203,11 @@ std::string with_captions(const std::string& movie, const std::vector<Caption>& 
   content.replace(next_at, 4, Bytes().u32(next + 1).text);
   const std::string track = subtitle_track(samples, next, scale, first_byte), chapters = chapter_list(captions);
   const Place user = find_box(content, 0, content.size(), "udta");
-  if (user.at == std::string::npos) return box("moov", content + track + box("udta", chapters));
+  const std::string& title = captions.front().text;
+  if (user.at == std::string::npos) return box("moov", content + track + box("udta", with_title("", title) + chapters));
   const std::string before = content.substr(0, user.at), own = content.substr(user.at + 8, user.size - 8),
                     after = content.substr(user.at + user.size);
-  return box("moov", before + track + box("udta", own + chapters) + after);
+  return box("moov", before + track + box("udta", with_title(own, title) + chapters) + after);
 }
 
 }  // namespace

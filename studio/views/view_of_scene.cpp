@@ -31,12 +31,21 @@ std::string_view organ_of(const scenes::MaterialSpec& material) {
   return preset ? preset->organ : std::string_view();
 }
 
+/// Whether tissues differ in more than the tension that they are under, which nobody sees.
+bool looks_alike(scenes::MaterialSpec a, scenes::MaterialSpec b) {
+  for (scenes::MaterialSpec* material : {&a, &b}) material->prestrain.reset(), material->fitted_for.reset();
+  return a == b;
+}
+
+/// The material below a layer.
+const scenes::MaterialSpec& material_below(const scenes::OrganSpec& organ, std::size_t layer) {
+  return layer + 1 < organ.layers.size() ? organ.layers[layer + 1].material : organ.material;
+}
+
 /// A layer of the tissue below it, or of none that has a colour, is pale as a capsule is.
 render::Colour colour_of_layer(const scenes::OrganSpec& organ, std::size_t layer) {
-  const scenes::MaterialSpec& below =
-      layer + 1 < organ.layers.size() ? organ.layers[layer + 1].material : organ.material;
   const std::string_view tissue = organ_of(organ.layers[layer].material);
-  if (tissue != organ_of(below))
+  if (tissue != organ_of(material_below(organ, layer)))
     for (const auto& [name, colour] : kTissues)
       if (tissue == name) return colour;
   constexpr double kPale = 0.25;
@@ -69,8 +78,9 @@ render::SceneView view_of(const scenes::SceneSpec& scene, const Model& model) {
     look.outer = {organ.surface_color.x, organ.surface_color.y, organ.surface_color.z};
     look.inner = {organ.inner_color.x, organ.inner_color.y, organ.inner_color.z};
     for (std::size_t layer = 0; layer < organ.layers.size(); ++layer)
-      look.layers.push_back({organ.layers[layer].to_depth, colour_of_layer(organ, layer)});
-    if (organ.layers.empty()) look.layers = anatomy_of(organ.name);
+      if (!looks_alike(organ.layers[layer].material, material_below(organ, layer)))
+        look.layers.push_back({organ.layers[layer].to_depth, colour_of_layer(organ, layer)});
+    if (look.layers.empty()) look.layers = anatomy_of(organ.name);
     view.looks.push_back(look);
   }
   return view;

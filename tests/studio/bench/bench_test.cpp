@@ -131,6 +131,18 @@ TEST(BenchCommand, SpendsAMillisecondOnTimeSpaceStructureAndPhase) {
   EXPECT_NE(slurp(folder.path() / "out/report.html").find("Where a millisecond buys most"), std::string::npos);
 }
 
+TEST(BenchCommand, SaysWhereSpheresInOneSheetDoNotCarryTheSurface) {
+  const TemporaryFolder folder;
+  const std::string skin = std::string(CTPM_SOURCE_DIR) + "/scenes/skin.json";
+  const ProgramOutcome outcome = run_ctpm({"bench", skin, "-o", "out", "--quick"}, folder.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* file : {"out/results.csv", "out/report.html"}) {
+    const std::string text = slurp(folder.path() / file);
+    EXPECT_NE(text.find("surface not carried"), std::string::npos) << file;
+    EXPECT_EQ(text.find("nan"), std::string::npos) << file << ": " << text.substr(text.find("nan"), 60);
+  }
+}
+
 TEST(BenchCommand, ASceneWithoutABallIsRefusedWithItsName) {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "bare.json") << R"({

@@ -128,6 +128,21 @@ TEST_F(Export, TheVideoShowsTheNumbersOfTheReplay) {
   EXPECT_NEAR(std::atof(reader.read_after(*frame, "depth").c_str()), cell("depth_mm"), 0.005 + 1e-9);
 }
 
+TEST_F(Export, ItsFirstPictureShowsTheForceOfTheTickBeforeIt) {
+  // So slow that no tick passes before the first picture.
+  for (const std::string speed : {"0.001", "1"})
+    ASSERT_EQ(run_ctpm({"export", "press.ctpm", "-o", speed + "/", "--speed", speed, "--from-s", "1.1", "--to-s",
+                        speed == "1" ? "1.11" : "1.101", "--fps", speed == "1" ? "240" : "10"},
+                       folder_.path())
+                  .code,
+              0);
+  const render_test::GlyphReader reader(1280, 720);
+  const double before = std::atof(reader.read_after(picture("0.001", 1), "force").c_str()),
+               after = std::atof(reader.read_after(picture("1", 1), "force").c_str());
+  EXPECT_GT(before, 0.1) << "the ball presses";
+  EXPECT_NEAR(before, after, 0.2 * after);
+}
+
 TEST_F(Export, TheVideoOfACutShowsItsDepthWhetherOrNotTheCutIsShown) {
   const std::string session = std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/kidney-cut-expert.ctpm";
   const render_test::GlyphReader reader(1280, 720);
@@ -285,6 +300,7 @@ TEST_F(Export, CaptionsAreReadBackAsSubtitlesAndChapters) {
     EXPECT_EQ(asked.err, "");
     return asked.out;
   };
+  EXPECT_EQ(ask({"-show_entries", "format_tags=title"}), "kidney: kidney-cut-expert\n");
   EXPECT_EQ(ask({"-select_streams", "s", "-show_entries", "stream=codec_name"}), "mov_text\n");
   const std::string chapters = ask({"-show_entries", "chapter=start_time:chapter_tags=title"});
   auto reader = recordings::SessionReader::open(session);

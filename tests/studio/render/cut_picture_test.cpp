@@ -286,6 +286,30 @@ render::Frame without_wall(const Stages& stages, std::size_t stage, const render
   return picture;
 }
 
+TEST(CutPicture, RenderersOfOneSceneFollowACutTogether) {
+  constexpr int kWidth = 320, kHeight = 180;
+  const auto scene = make_blob_scene();
+  auto first = render::Renderer::create(kWidth, kHeight, scene->view);
+  ASSERT_TRUE(first);
+  auto second = render::Renderer::create(kWidth, kHeight, (*first)->scene());
+  auto alone = render::Renderer::create(kWidth, kHeight, scene->view);
+  ASSERT_TRUE(second && alone);
+  EXPECT_EQ((*first)->scene().cuts, (*second)->scene().cuts);
+  render::DrawOptions options;
+  options.camera = render::default_camera(scene->view);
+  std::uint64_t changes = 0;
+  const State rest = rest_state(scene->model), shallow = cut_along_y(scene->model, 0.01, 0, 0),
+              deep = cut_along_y(scene->model, 0.01, 0.02, -0.01);
+  for (const State* state : {&rest, &shallow, &deep, &rest, &deep}) {
+    const render::Frame expected = (*alone)->draw(*state, options);
+    EXPECT_EQ((*first)->draw(*state, options).rgb, expected.rgb);
+    changes = (*first)->scene().cuts->front().changes();
+    EXPECT_EQ((*second)->draw(*state, options).rgb, expected.rgb);
+    EXPECT_EQ((*first)->scene().cuts->front().changes(), changes) << "the second one made nothing again";
+  }
+  EXPECT_EQ(changes, 4u);
+}
+
 TEST(CutPicture, FourStagesOfACutFromTwoCameras) {
   const Stages stages = cut_in_stages();
   const Model& model = stages.scene->model;

@@ -117,6 +117,36 @@ TEST(Overlay, EveryTextStandsOnAPanel) {
   }
 }
 
+/// Relative luminance (WCAG 2).
+double luminance(const std::uint8_t* rgb) {
+  const auto light = [](int c) {
+    const double share = c / 255.0;
+    return share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
+  };
+  return 0.2126 * light(rgb[0]) + 0.7152 * light(rgb[1]) + 0.0722 * light(rgb[2]);
+}
+
+TEST(Overlay, EveryTextStandsOutFromItsPanel) {
+  constexpr double kLegible = 4.5;  // contrast of WCAG 2, AA
+  render::OverlayData data = full_data();
+  data.worst.depth = 0.0186;
+  for (const render::VerdictTone tone : {render::VerdictTone::good, render::VerdictTone::bad}) {
+    data.verdict_tone = tone;
+    render::Overlay overlay(1280, 720);
+    render::Frame frame = render::blank_frame(1280, 720, 160, 172, 182);
+    overlay.draw(frame, data);
+    for (const render::PlacedText& text : overlay.layout(data)) {
+      double darkest = 1, brightest = 0;
+      for (int y = text.box.y; y < text.box.y + text.box.height; ++y)
+        for (int x = text.box.x; x < text.box.x + text.box.width; ++x) {
+          const double light = luminance(&frame.rgb[std::size_t(y * frame.width + x) * 3]);
+          darkest = std::min(darkest, light), brightest = std::max(brightest, light);
+        }
+      EXPECT_GT((brightest + 0.05) / (darkest + 0.05), kLegible) << text.text;
+    }
+  }
+}
+
 TEST(Overlay, ItsNumbersAreReadBackFromThePicture) {
   const render_test::GlyphReader reader(1280, 720);
   render::OverlayData data = full_data();

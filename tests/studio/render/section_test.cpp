@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "core/cutting/blade_geometry.h"
+#include "studio/render/depth_field.h"
+#include "studio/render/shading.h"
 #include "tests/studio/render/scene.h"
 
 namespace ctpm::render_test {
@@ -133,6 +135,46 @@ TEST(Section, FromTenDirectionsARayThroughKnownLayersShowsTheirColours) {
   for (const auto& [known, count] : wrong) EXPECT_EQ(count, 0) << int(known) << " of " << seen[known];
 }
 
+/// As the shader reads it, between the values.
+double depth_between(const render::DepthField& field, Vec3 p) {
+  std::array<int, 3> cell;
+  std::array<double, 3> part;
+  const Vec3 from = p - field.low;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double place = (a == 0   ? from.x / field.size.x
+                          : a == 1 ? from.y / field.size.y
+                                   : from.z / field.size.z) *
+                             field.count[a] -
+                         0.5;
+    cell[a] = int(std::floor(place)), part[a] = place - cell[a];
+  }
+  double sum = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    double weight = 1;
+    std::size_t at = 0, stride = 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const int up = corner >> a & 1;
+      weight *= up ? part[a] : 1 - part[a];
+      at += stride * std::size_t(std::clamp(cell[a] + up, 0, field.count[a] - 1)),
+          stride *= std::size_t(field.count[a]);
+    }
+    sum += weight * field.depth[at];
+  }
+  return sum;
+}
+
+TEST(Section, ADepthSmallerThanTheGridIsKnown) {
+  const Surface surface = star_surface(blob, 60);
+  const render::DepthField field(surface, 0.004, 0.0006);
+  const double grid = field.size.x / field.count[0];
+  ASSERT_GT(grid, 0.0007);
+  render::Shading shading;
+  render::find_normals(surface, surface.vertex, shading);
+  for (std::size_t v = 0; v < surface.vertex.size(); v += 7)
+    for (const double depth : {-0.0003, 0.0003, 0.0006, 0.002})
+      EXPECT_NEAR(depth_between(field, surface.vertex[v] - depth * shading.normal[v]), depth, 0.00015) << v;
+}
+
 double light_at(const render::Frame& frame, const render::Camera& camera, Vec3 p) {
   const render::Pixel at = render::project(camera, kWidth, kHeight, p);
   const std::size_t i = (std::size_t(at.y) * kWidth + std::size_t(at.x)) * 3;
@@ -162,6 +204,26 @@ TEST(Section, ItsTextureStaysWithTheTissue) {
   int changed = 0;
   for (std::size_t i = 0; i < before.rgb.size(); ++i) changed += std::abs(before.rgb[i] - after.rgb[i]) > 6;
   EXPECT_LT(changed, 60) << "of " << before.rgb.size();
+}
+
+TEST(Section, ItsRimAndEachLayerBelowAnotherAreInShade) {
+  const auto scene = make_layered_scene(40);
+  auto made = render::Renderer::create(kWidth, kHeight, scene->view);
+  ASSERT_TRUE(made);
+  render::DrawOptions options = section_from_side(scene->view);
+  options.camera.fov_deg *= 0.4, options.camera.target.z += 0.015;
+  const render::Frame picture = (*made)->draw(rest_state(scene->model), options);
+  double top = 0;
+  for (const Vec3& p : scene->model.surfaces[0].vertex) top = std::max(top, p.z);
+  // Along the middle, where the surface is level and a depth is a height; the mean of many places has no texture.
+  const auto light_at_depth = [&](double depth) {
+    double sum = 0;
+    for (int i = -20; i <= 20; ++i) sum += light_at(picture, options.camera, {0.0003 * i, 0, top - depth});
+    return sum;
+  };
+  EXPECT_LT(light_at_depth(0.0007), 0.9 * light_at_depth(0.0035));
+  EXPECT_LT(light_at_depth(kFirstEnds + 0.0007), 0.85 * light_at_depth(kFirstEnds + 0.0045));
+  EXPECT_LT(light_at_depth(kSecondEnds + 0.0007), 0.85 * light_at_depth(kSecondEnds + 0.006));
 }
 
 TEST(Section, WhatIsLeftOutCastsNoShadow) {

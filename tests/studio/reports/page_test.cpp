@@ -95,12 +95,17 @@ TEST_F(Page, OnASmallScreenNothingIsOutOfSight) {
   reports::Plot residuals = force_plot();
   residuals.y_title = "network less measured [N]";
   residuals.y_range = {-0.0022, 0.0012}, residuals.series[0].y = {-0.002, 0, 0.001};
-  report.add_plots({force_plot(), small, residuals});
+  reports::Plot wordy = force_plot();
+  wordy.title = "Under auto, of the way that spheres may go, this much is gone";
+  report.add_plots({force_plot(), small, residuals, wordy});
   reports::Table table;
   for (int i = 0; i < 14; ++i) table.columns.push_back({"key", "column number " + std::to_string(i)});
   table.rows.emplace_back(14, reports::Cell(1234567.0));
   table.rows[0][13] = reports::ReportVerdict::missed;
-  report.add_table(table);
+  reports::Table narrow;
+  narrow.columns = {{"recipe", "recipe"}, {"verdict", "verdict"}, {"met", "met"}};
+  narrow.rows = {{std::string("The drawn surface under a ball, and a small ball"), reports::ReportVerdict::met, 3.0}};
+  report.add_table(table), report.add_table(narrow);
   std::string page = report.html(), quoted;
   for (const char c : page) quoted += c == '"' ? "&quot;" : c == '&' ? "&amp;" : std::string(1, c);
   const std::string after =
@@ -113,14 +118,16 @@ TEST_F(Page, OnASmallScreenNothingIsOutOfSight) {
       const meet = (a, b) => a.right > b.left && b.right > a.left && a.bottom > b.top + 3 && b.bottom > a.top + 3;
       document.body.dataset.cut = [...inner.querySelectorAll("svg")].flatMap(svg => texts(svg).filter((one, i, all) =>
         one.box.right > svg.getBoundingClientRect().right || all.some((other, j) => j != i && meet(one.box, other.box)))).map(one => one.text).join(", ");
-      document.body.dataset.beside = Math.abs(cell.getBoundingClientRect().top - first.getBoundingClientRect().top) < 8;
-    };
+      document.body.dataset.below = [...inner.querySelectorAll("table")].every(t => [...t.querySelectorAll(".n")].pop().getBoundingClientRect().top >= t.querySelector("td").getBoundingClientRect().bottom - 4);
+  document.body.dataset.beside = Math.abs(cell.getBoundingClientRect().top - first.getBoundingClientRect().top) < 8;
+};
   </script>)");
   EXPECT_TRUE(holds(after, "data-wider=\"0\"")) << after.substr(0, 300);
   EXPECT_TRUE(holds(after, "data-cut=\"\"")) << "no text of a plot lies on another or ends outside it: "
                                              << after.substr(std::min(after.find("data-cut"), after.size()), 100);
   EXPECT_TRUE(holds(after, "data-hidden=\"0\"")) << "no part scrolls sideways by itself";
   EXPECT_TRUE(holds(after, "data-beside=\"true\"")) << "the verdict stands beside the row's name";
+  EXPECT_TRUE(holds(after, "data-below=\"true\"")) << "and nothing else does";
 }
 
 TEST_F(Page, AsManySmallPlotsStandInARowAsFit) {

@@ -7,10 +7,23 @@
 namespace ctpm {
 namespace {
 
-render::OrganLook look_of(const std::string& name, std::vector<double> layer_ends = {}) {
+scenes::MaterialSpec preset(const std::string& name, std::optional<double> prestrain = {}) {
+  scenes::MaterialSpec material;
+  material.preset = name, material.prestrain = prestrain;
+  return material;
+}
+
+struct Layer {
+  double end = 0;  ///< [m]
+  scenes::MaterialSpec material;
+};
+
+render::OrganLook look_of(const std::string& name, const std::vector<Layer>& layers = {},
+                          const scenes::MaterialSpec& material = {}) {
   scenes::SceneSpec scene;
-  scene.organs.emplace_back().name = name;
-  for (const double end : layer_ends) scene.organs[0].layers.emplace_back().to_depth = end;
+  scenes::OrganSpec& organ = scene.organs.emplace_back();
+  organ.name = name, organ.material = material;
+  for (const Layer& layer : layers) organ.layers.push_back({layer.end, layer.material});
   const Model model;
   return views::view_of(scene, model).looks.at(0);
 }
@@ -31,10 +44,23 @@ TEST(Anatomy, AnOrganWithoutLayersShowsThoseOfItsKindAndItsOwnInside) {
 }
 
 TEST(Anatomy, LayersOfTheSceneStay) {
-  const render::OrganLook kidney = look_of("kidney", {0.002, 0.012});
+  const render::OrganLook kidney =
+      look_of("kidney", {{0.002, preset("skin")}, {0.012, preset("fat")}}, preset("kidney"));
   ASSERT_EQ(kidney.layers.size(), 2u);
   EXPECT_EQ(kidney.layers[0].to_depth, 0.002);
   EXPECT_EQ(kidney.layers[1].to_depth, 0.012);
+}
+
+TEST(Anatomy, TissueUnderMoreTensionLooksAsTheTissueBelowIt) {
+  const scenes::MaterialSpec liver = preset("liver", -0.07), tense = preset("liver", 0.05);
+  scenes::MaterialSpec stiff = preset("liver");
+  stiff.stiffness_scale = 4;
+  EXPECT_EQ(look_of("liver", {{0.012, tense}}, liver).layers, look_of("liver").layers);
+  ASSERT_EQ(look_of("liver", {{0.012, stiff}}, liver).layers.size(), 1u);
+  EXPECT_EQ(look_of("liver", {{0.012, stiff}}, liver).layers[0].to_depth, 0.012);
+  const render::OrganLook both = look_of("liver", {{0.002, stiff}, {0.012, tense}}, liver);
+  ASSERT_EQ(both.layers.size(), 1u);
+  EXPECT_EQ(both.layers[0].to_depth, 0.002);
 }
 
 }  // namespace
