@@ -146,7 +146,7 @@ export interface MeasureRow {
 }
 
 export interface ComparisonResult {
-  comparison: { scene: string; force_limit_n?: number; force_limit_from?: string; measures: MeasureRow[]; moments: Moment[] };
+  comparison: { scene: string; force_limit_n?: number; force_limit_from?: string; measures: MeasureRow[]; moments: Moment[]; advice: string[]; less_done?: string };
   remarks: string[];
   path_s: [number, number][];
 }

@@ -102,10 +102,22 @@ test("the mouse presses, cuts and records", async () => {
   await page.waitForSelector(".view.running");
   const box = await page.locator(".view canvas").boundingBox();
   const middle = { x: box.x + box.width / 2, y: box.y + 60 };
+  await page.evaluate(() => {
+    globalThis.heard = [];
+    const set = AudioParam.prototype.setTargetAtTime;
+    AudioParam.prototype.setTargetAtTime = function (value, ...more) {
+      globalThis.heard.push(value);
+      return set.call(this, value, ...more);
+    };
+  });
+  await page.keyboard.press("m");
   // Down onto the organ until it resists.
   await drag(middle, { x: 0, y: 150 }, 60);
   await page.waitForFunction(() => Number.parseFloat(document.querySelector(".force-bar output").textContent) > 0.1);
   await picture(page, "train-press");
+  assert.ok(await page.locator("aside .tick input").isChecked());
+  const heard = await page.evaluate(() => globalThis.heard.filter((value) => value > 1)); // pitches, not loudness
+  assert.ok(Math.min(...heard) === 160 && Math.max(...heard) > 170, `the sound rises with the force: ${Math.min(...heard)} to ${Math.max(...heard)} Hz`);
   assert.deepEqual(await seriousFindings(page), []);
   await drag({ x: middle.x, y: middle.y + 150 }, { x: 0, y: -150 }, 40);
   // The blade, with keys and mouse: down into the organ, and along.
@@ -146,6 +158,7 @@ test("a worst moment leads to the timeline", async () => {
   await page.waitForFunction(() => document.querySelectorAll(".uplot").length >= 3);
   await page.waitForTimeout(1500);
   assert.match(await page.locator(".captions").innerText(), /kidney-cut-expert.*mine/s);
+  assert.ok(await page.locator("#panel .jumps button").count(), "the other worst moments are there too");
   await picture(page, "train-to-review");
 });
 
