@@ -180,6 +180,8 @@ export interface EndedTraining {
   tick_time_p99_s?: number;
   pose_wait_p50_s?: number; // from when a pose was sent to the tick that took it
   pose_wait_p99_s?: number;
+  pose_way_p99_s?: number; // of it, until the program had read it
+  poses_within_5ms?: number; // share
 }
 
 export interface OrganTriangles {

@@ -332,6 +332,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
             ["behind the clock", behind(ended.slip_s ?? 0, ended.slip_max_s ?? 0)],
             ["tick p50, p99", `${(1e3 * (ended.tick_time_p50_s ?? 0)).toFixed(2)}, ${(1e3 * (ended.tick_time_p99_s ?? 0)).toFixed(2)} ms`],
             ["hand to tick p50, p99", `${(1e3 * (ended.pose_wait_p50_s ?? 0)).toFixed(1)}, ${(1e3 * (ended.pose_wait_p99_s ?? 0)).toFixed(1)} ms`],
+            ["within 5 ms", `${(1e2 * (ended.poses_within_5ms ?? 0)).toFixed(1)} %`],
           ]} />
         )}
         <button type="button" onClick={onAgain}>Train again</button>

@@ -64,7 +64,24 @@ test("names in a scene are text", async () => {
   await page.click("button:has-text('End')");
   await page.waitForSelector("button:has-text('Train again')");
   assert.equal(await page.locator("main img").count(), 0);
+  // In the other rooms too: lists, handles and fields of a scene, captions and panels of its session.
   await page.click("button:has-text('Train again')");
+  await page.locator("aside input").first().fill("html.ctpm");
+  await page.click(".list button:has-text('html')");
+  await page.waitForSelector(".view.running");
+  await page.waitForTimeout(300);
+  await page.keyboard.press("Escape");
+  await page.click("button:has-text('Open in Review')");
+  await page.waitForSelector(".review .clock"); // nothing was touched: there are no curves
+  assert.match(await page.locator(".view > canvas").getAttribute("aria-label"), /<img src=x/);
+  assert.equal(await page.locator("main img, main b[onclick]").count(), 0);
+  await page.click("header nav button:has-text('Author')");
+  await page.click(".scenes button:has-text('html')");
+  await page.waitForSelector(".handle:has(span:text-is('<b onclick=alert(2)>ball</b>'))", { state: "attached" }); // out of the picture
+  await page.click(".objects button:has-text('<img src=x')");
+  assert.equal(await page.locator(".objects button:has-text('<img src=x onerror=alert(1)>')").count(), 1);
+  assert.equal(await page.locator("main img, main b[onclick]").count(), 0);
+  await page.click("header nav button:has-text('Train')");
 });
 
 test("the mouse leads one of two hands, and the other one stays", async () => {
@@ -150,7 +167,7 @@ test("the session verifies to the bit, and is compared at once", async () => {
   const info = JSON.parse(ctpm(folder, "info", "mine.ctpm", "--json").out);
   assert.equal(info.metadata.source, "studio");
   assert.ok(info.severed > 0);
-  console.log(`training: pose to tick p50 ${(1e3 * info.values.device_pose_wait_p50_s).toFixed(1)} ms, p99 ${(1e3 * info.values.device_pose_wait_p99_s).toFixed(1)} ms; between poses at most ${(1e3 * info.values.device_longest_gap_s).toFixed(0)} ms`);
+  console.log(`training: pose to tick p50 ${(1e3 * info.values.device_pose_wait_p50_s).toFixed(1)} ms, p99 ${(1e3 * info.values.device_pose_wait_p99_s).toFixed(1)} ms (on the way p99 ${(1e3 * info.values.device_pose_way_p99_s).toFixed(1)} ms), ${(1e2 * info.values.device_poses_within_5ms).toFixed(1)} % within 5 ms; between poses at most ${(1e3 * info.values.device_longest_gap_s).toFixed(0)} ms`);
 });
 
 test("a worst moment leads to the timeline", async () => {
