@@ -211,7 +211,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
                 ))}
               </div>
             )}
-            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}mouse: move · wheel: depth · Q E, W S, A D: turn · right button: look around · M: sound · Esc: end</span>}
+            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}mouse: move · wheel: depth · Q E, W S, A D: turn · right button: look around · Esc: end</span>}
             <output class="clock">{seconds(frame?.time ?? 0, 1)}</output>
           </div>
         )}

@@ -167,6 +167,14 @@ test("the session verifies to the bit, and is compared at once", async () => {
   const info = JSON.parse(ctpm(folder, "info", "mine.ctpm", "--json").out);
   assert.equal(info.metadata.source, "studio");
   assert.ok(info.severed > 0);
+  // The same motion as a table, recorded by the command, does the same to the tissue; the table has nine digits.
+  assert.equal(ctpm(folder, "replay", "mine.ctpm", "--csv", "mine.csv").code, 0);
+  const again = ctpm(folder, "record", "kidney.json", "--motion", "mine.csv", "-o", "again.ctpm");
+  assert.equal(again.code, 0, again.out + again.err);
+  const same = JSON.parse(ctpm(folder, "info", "again.ctpm", "--json").out);
+  assert.ok(Math.abs(same.severed - info.severed) <= 0.02 * info.severed, `${same.severed} and ${info.severed} elements are severed`);
+  for (const key of ["max_force_n", "max_depth_m"]) assert.ok(Math.abs(same[key] / info[key] - 1) < 0.02, `${key}: ${same[key]} and ${info[key]}`);
+  console.log(`training: as a table of its motion ${same.severed} of ${info.severed} elements, ${same.max_force_n} and ${info.max_force_n} N`);
   console.log(`training: pose to tick p50 ${(1e3 * info.values.device_pose_wait_p50_s).toFixed(1)} ms, p99 ${(1e3 * info.values.device_pose_wait_p99_s).toFixed(1)} ms (on the way p99 ${(1e3 * info.values.device_pose_way_p99_s).toFixed(1)} ms), ${(1e2 * info.values.device_poses_within_5ms).toFixed(1)} % within 5 ms; between poses at most ${(1e3 * info.values.device_longest_gap_s).toFixed(0)} ms`);
 });
 
