@@ -192,7 +192,8 @@ std::vector<std::string> remarks_of(const ComparedSessions& compared) {
           " does not replay as it was recorded: which elements it severed comes from simulating it now, all "
           "else from the recording");
     else if (!track->is_verified)
-      remarks.push_back(track->path + " was not replayed: its forces and depths are those that it states");
+      remarks.push_back(track->path +
+                        " was not replayed for this comparison: its forces and depths are those that it states");
     if (!track->is_timed)
       remarks.push_back(track->path + " lacks " + output::fixed(track->slip, 3) +
                         " s of the real time, because ticks were late: no measure of time or smoothness is given");

@@ -26,7 +26,8 @@ enum class DeviceNews : std::int32_t {
 /// One message of a device, or one change of its connection.
 struct DeviceReport {
   DeviceNews news = DeviceNews::pose;
-  double arrival = 0;         ///< time of arrival, by device_clock() [s]
+  double arrival = 0;         ///< time of arrival, by device_clock(); had it been as quick as the quickest [s]
+  double on_way = 0;          ///< how long it took longer than the quickest one until it was read [s]; 0: unknown
   double device_time = 0;     ///< time of measurement, by the device's own clock [s]; 0: unknown
   Pose pose;                  ///< in the device's frame, unchecked: may be non-finite
   std::uint32_t buttons = 0;  ///< bit set

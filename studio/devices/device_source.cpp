@@ -54,7 +54,7 @@ bool DeviceSource::take_reports(double now) {
   // Those of a flood are left for the next ticks: a tick never waits for a sender.
   DeviceReport report;
   for (int i = 0; i < kMostReports && device_->next(report); ++i)
-    if (guard_.take(report)) has_new_pose = true, waits_.add(now - report.arrival);
+    if (guard_.take(report)) has_new_pose = true, waits_.add(now - report.arrival), ways_.add(report.on_way);
   saw_fault_ = guard_.counts().refused + guard_.counts().unread != refused_before;
   return has_new_pose;
 }
@@ -74,7 +74,7 @@ void DeviceSource::aim(double now) {
 std::optional<Inputs> DeviceSource::next(std::int64_t, const stepping::StepReport& last) {
   const double now = clock_();
   const bool has_new_pose = take_reports(now);
-  if (!has_ticked_) waits_ = {};  // for what was before the first tick no tick was there
+  if (!has_ticked_) waits_ = {}, ways_ = {};  // for what was before the first tick no tick was there
   has_ticked_ = true;
   guard_.look(now);
   if (!guard_.verdict().empty()) return std::nullopt;
@@ -126,7 +126,9 @@ std::vector<recordings::NamedValue> DeviceSource::statistics() const {
           {"device_forces_sent", double(forces_)},
           {"device_longest_gap_s", counts.longest_gap},
           {"device_pose_wait_p50_s", waits_.at(0.5)},
-          {"device_pose_wait_p99_s", waits_.at(0.99)}};
+          {"device_pose_wait_p99_s", waits_.at(0.99)},
+          {"device_pose_way_p99_s", ways_.at(0.99)},
+          {"device_poses_within_5ms", waits_.share_within(5e-3)}};
 }
 
 }  // namespace ctpm::devices

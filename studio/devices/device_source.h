@@ -63,7 +63,7 @@ class DeviceSource : public sources::InputSource {
   bool saw_fault_ = false;  ///< a report of this tick was refused
   double age_ = 0;
   bool has_ticked_ = false;
-  WaitTimes waits_;  ///< of good poses since the first tick
+  WaitTimes waits_, ways_;  ///< of good poses since the first tick: until their tick; DeviceReport::on_way
   std::int64_t forces_ = 0;
 };
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <numeric>
 
 namespace ctpm::devices {
 
@@ -15,6 +17,13 @@ class WaitTimes {
   void add(double wait_s) {
     const double bin = std::floor(std::clamp(wait_s, 0.0, kMost) / kBin);
     ++bins_[std::min(std::size_t(bin), bins_.size() - 1)], ++count_;
+  }
+
+  /// Share of the waits that end in a bin up to `wait_s`, in [0, 1]; 1: there was none.
+  double share_within(double wait_s) const {
+    const auto bins = std::min(std::size_t(std::llround(wait_s / kBin)), bins_.size());
+    const auto within = std::accumulate(bins_.begin(), bins_.begin() + std::ptrdiff_t(bins), std::int64_t{0});
+    return count_ > 0 ? double(within) / double(count_) : 1;
   }
 
   /// The end of the bin in which the smallest wait lies that a `share` of all do not exceed [s]; 0: there was none.

@@ -73,6 +73,7 @@ Result<std::string> import_mesh(Parameters& parameters, const CallContext& conte
   request.unit_in_metres = parameters.number_if("unit_m", 1e-6, 10);
   request.sphere_radius = parameters.number_if("radius_m", 1e-5, 0.1);
   request.gap = parameters.number_if("gap_m", 0, 0.1);
+  request.largest_hole = parameters.number_if("largest_hole_m", 0, 10);
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
   const Result<std::string> file = context.folder.find(mesh), place = place_of_scene(context.folder, scene);
   for (const auto* path : {&file, &place})

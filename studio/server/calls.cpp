@@ -1,5 +1,7 @@
 #include "studio/server/calls.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "studio/server/call_table.h"
@@ -36,9 +38,14 @@ bool is_beside(const std::string& path, const char* ending) { return path.ends_w
 }  // namespace
 
 Result<std::string> run_call(const std::string& name, Parameters& parameters, const CallContext& context) {
-  for (const auto& [known, call] : kCalls)
-    if (name == known) return call(parameters, context);
-  return Error{name, "there is no such call", ""};
+  const auto found =
+      std::find_if(std::begin(kCalls), std::end(kCalls), [&](const auto& known) { return name == known.first; });
+  if (found == std::end(kCalls)) return Error{name, "there is no such call", ""};
+  Result<std::string> result = found->second(parameters, context);
+  if (result) return result;
+  Errors errors = result.errors();
+  for (Error& error : errors) error.where = context.folder.shown(error.where);
+  return errors;
 }
 
 Result<std::string> list_folder(Parameters& parameters, const CallContext& context) {

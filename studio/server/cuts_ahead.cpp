@@ -1,14 +1,12 @@
 #include "studio/server/cuts_ahead.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "recordings/session_reader.h"
 #include "studio/server/cut_key.h"
+#include "studio/server/urgency.h"
 
 namespace ctpm::server {
 
@@ -57,7 +55,7 @@ CutsAhead::CutsAhead(const std::string& file, const Model& model, std::uint32_t 
     : cuts_(std::move(cuts)) {
   if (!model.has_scalpel()) return;
   thread_ = std::thread([this, file, stage] {
-    setpriority(PRIO_PROCESS, id_t(gettid()), 15);
+    become(Urgency::idle);
     Result<recordings::SessionReader> reader = recordings::SessionReader::open(file);
     if (!reader) return;
     const Result<std::vector<std::int64_t>> keyframes = reader->keyframe_ticks();

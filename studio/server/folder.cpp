@@ -80,6 +80,11 @@ std::vector<FolderEntry> Folder::list(const std::string& ending) const {
   return entries;
 }
 
+std::string Folder::shown(const std::string& text) const {
+  const std::string begin = root_.string() + "/";
+  return text.starts_with(begin) ? text.substr(begin.size()) : text;
+}
+
 std::string Folder::relative(const std::string& path) const {
   return fs::path(path).lexically_relative(root_).generic_string();
 }

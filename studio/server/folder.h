@@ -36,6 +36,9 @@ class Folder {
   /// The path from the folder to a file in it, with '/'.
   std::string relative(const std::string& path) const;
 
+  /// A text that begins with a file of the folder, with that file as the page names it: relative().
+  std::string shown(const std::string& text) const;
+
   const std::filesystem::path& root() const { return root_; }  ///< absolute, links resolved
 
   static constexpr std::size_t kMostListed = 5000;

@@ -1,6 +1,5 @@
 #include "studio/server/moments.h"
 
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 #include <limits>
 
 #include "studio/server/cut_key.h"
+#include "studio/server/urgency.h"
 
 namespace ctpm::server {
 namespace {
@@ -173,7 +173,7 @@ void Moments::work() {
     while (rests_ && !ends_) std::this_thread::sleep_for(std::chrono::milliseconds(2));
     if (const Place place = before(keyframes_[i]); !place.second) (void)read(place, reader_);
   }
-  setpriority(PRIO_PROCESS, id_t(gettid()), 15);
+  become(Urgency::idle);
   Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(reader_);
   if (!cursor) return;
   for (std::size_t next; !ends_ && (next = next_interval()) < keyframes_.size();) {

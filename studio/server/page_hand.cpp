@@ -11,7 +11,7 @@ void PageHand::move(const HandMove& move, double sent_s) {
   const double now = devices::device_clock();
   clock_offset_ = std::min(clock_offset_, now - sent_s);
   report.arrival = std::min(now, sent_s + clock_offset_);
-  report.device_time = sent_s;
+  report.device_time = sent_s, report.on_way = now - report.arrival;
   if (move.buttons != buttons_) {
     report.news = devices::DeviceNews::buttons, report.buttons = buttons_ = move.buttons;
     reports_.push(report);

@@ -7,6 +7,7 @@
 #include "studio/output/option_name.h"
 #include "studio/server/http_connection.h"
 #include "studio/server/services.h"
+#include "studio/server/urgency.h"
 
 namespace ctpm::server {
 
@@ -134,6 +135,7 @@ std::string Server::listens_on() const {
 }
 
 void Server::run(const std::function<bool()>& should_stop) {
+  become(Urgency::tick);
   impl_->accept_next();
   impl_->look(should_stop);
   impl_->services.network.run();

@@ -127,7 +127,7 @@ Result<std::string> compare_sessions(Parameters& parameters, const CallContext& 
   const compare::ComparedSessions compared = files->sessions();
   output::JsonWriter json;
   json.begin_list();
-  for (const std::string& remark : compare::remarks_of(compared)) json.value(remark);
+  for (const std::string& remark : compare::remarks_of(compared)) json.value(context.folder.shown(remark));
   json.end_list();
   // Moments of both sessions that belong together, along the path.
   output::JsonWriter path;

@@ -7,6 +7,7 @@
 #include "studio/server/glimpse.h"
 #include "studio/server/seeker.h"
 #include "studio/server/text.h"
+#include "studio/server/urgency.h"
 
 namespace ctpm::server {
 
@@ -136,6 +137,7 @@ void Stage::wait_for_glimpse(const Wish& wish) {
 }
 
 void Stage::replay() {
+  become(Urgency::picture);
   Seeker seeker(reader_, *moments_);
   PictureMaker maker(reader_.start().model, number_, cuts_);
   Drawing drawing(reader_);
@@ -164,6 +166,7 @@ void Stage::end_glance() {
 
 /// Shows what is known of moments without a simulation. Damaged parts of the session and its beginning have no glimpse.
 void Stage::glance() {
+  become(Urgency::picture);
   Result<recordings::SessionReader> reader = recordings::SessionReader::open(reader_.path());
   if (!reader) {  // it went away since it was opened: the replay says so
     while (next(wants_glimpse_)) end_glance();

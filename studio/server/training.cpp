@@ -1,8 +1,5 @@
 #include "studio/server/training.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -13,6 +10,7 @@
 #include "studio/output/json_writer.h"
 #include "studio/server/picture.h"
 #include "studio/server/text.h"
+#include "studio/server/urgency.h"
 #include "studio/session/recent_times.h"
 #include "studio/session/record_session.h"
 #include "studio/session/unkept_session.h"
@@ -57,7 +55,9 @@ std::string ended_text(const std::string& shown, const Result<session::RecordOut
         .member("tick_time_p50_s", s.tick_time_p50)
         .member("tick_time_p99_s", s.tick_time_p99)
         .member("pose_wait_p50_s", value_of(s, "device_pose_wait_p50_s"))
-        .member("pose_wait_p99_s", value_of(s, "device_pose_wait_p99_s"));
+        .member("pose_wait_p99_s", value_of(s, "device_pose_wait_p99_s"))
+        .member("pose_way_p99_s", value_of(s, "device_pose_way_p99_s"))
+        .member("poses_within_5ms", value_of(s, "device_poses_within_5ms"));
   }
   return event_text("train_ended", json.end_object().text());
 }
@@ -141,8 +141,7 @@ void Training::tell(const char* event, const std::string& text) {
 }
 
 void Training::tick() {
-  // The browser draws on the same processors. Only a privileged user may ask for this; others do without.
-  setpriority(PRIO_PROCESS, id_t(gettid()), -15);
+  become(Urgency::tick);
   const auto should_stop = [this] { return ends_.load(); };
   if (std::all_of(followed_.begin(), followed_.end(), [&](devices::DeviceSource* hand) {
         return hand->wait_for_first_pose(should_stop, [this](const std::string& why) { tell("train_waits", why); });

@@ -13,7 +13,7 @@ import type { Listing } from "./protocol";
 import { SceneEditor } from "./scene_editor";
 import type { Shown } from "./stage_scene";
 import { command } from "./text";
-import { Viewer } from "./viewer";
+import { kTurns, Viewer } from "./viewer";
 
 const kMeshes = ".stl,.obj,.ply,.off,.gltf,.glb,.dae,.fbx,.3ds,.3mf,.vtk";
 type Panel = "place" | "filling" | "scene";
@@ -108,6 +108,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
       const key = event.key.toLowerCase(), isEditing = (event.target as HTMLElement).closest(".editor") !== null;
       if (event.key === "Escape" && brushRadius !== null) setBrushRadius(null);
       else if (event.key === "Delete" && item && item.kind !== "organ" && !(event.target as HTMLElement).closest("input, textarea, select, .editor")) remove(item);
+      else if (event.target === canvas.current && key in kTurns && !event.ctrlKey && !event.metaKey && !event.altKey) desk?.viewer.turn(...kTurns[key]);
       else if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
       else if (key === "s") void save();
       else if (isEditing) return; // the editor has its own keys
@@ -159,7 +160,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
         )}
       </nav>
       <div class="view">
-        <canvas ref={canvas} tabIndex={0} aria-label={scene?.shown ? `The scene ${scene.shown.view.name} at rest` : "No scene"} />
+        <canvas ref={canvas} tabIndex={0} aria-label={scene?.shown ? `The scene ${scene.shown.view.name} at rest; A, D, W, S, + and - turn the view` : "No scene"} />
         <div class="handles" ref={overlay} />
         {desk && doc && <ViewBar desk={desk} modes={modes} mode={used} onMode={setMode} onVersion={() => setVersion((v) => v + 1)} />}
         {!doc && !scene?.isLoading && (

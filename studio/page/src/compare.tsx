@@ -2,7 +2,7 @@ import { useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
 import { Problems, Section, ShownCommand, Working } from "./parts";
 import { firstOf, type Player } from "./player";
-import type { ComparisonResult, Listing } from "./protocol";
+import type { ComparisonResult, Listing, MeasureRow } from "./protocol";
 import { command, seconds, short } from "./text";
 
 /** The session beside: which one, how the two are aligned, and how they differ. */
@@ -17,11 +17,9 @@ export function Compare({ connection, player, listing, comparison, onComparison,
   const [error, setError] = useState<Error | null>(null);
   const [progress, setProgress] = useState<[number, number] | null>(null);
   const running = useRef<AbortController | null>(null);
-  const [aligned, setAligned] = useState(player.path ? "path" : "");
   const first = player.tracks.get(0)!.session, second = player.tracks.get(1)?.session;
 
   const align = (kind: string) => {
-    setAligned(kind);
     const time = player.alignAt(kind);
     if (time !== null) player.move(time);
   };
@@ -49,7 +47,6 @@ export function Compare({ connection, player, listing, comparison, onComparison,
     const result = comparison ?? (await compare());
     if (!result) return;
     if (result.path_s.length === 0) return setError(new Error("Both paths have no part in common."));
-    setAligned("path");
     player.alignAlong(result.path_s);
   };
   const can = (kind: string) => !!second && firstOf(first.info, kind) !== null && firstOf(second.info, kind) !== null;
@@ -68,16 +65,14 @@ export function Compare({ connection, player, listing, comparison, onComparison,
         {second && (
           <>
             <div class="buttons" role="group" aria-label="Align at">
-              <button type="button" aria-pressed={aligned === "contact begins"} disabled={!can("contact begins")} onClick={() => align("contact begins")}>first contact</button>
-              <button type="button" aria-pressed={aligned === "cut"} disabled={!can("cut")} onClick={() => align("cut")}>first cut</button>
-              <button type="button" aria-pressed={aligned === "path"} disabled={progress !== null} onClick={() => void alignAlong()}>path</button>
+              <button type="button" aria-pressed={player.aligned === "contact begins"} disabled={!can("contact begins")} onClick={() => align("contact begins")}>first contact</button>
+              <button type="button" aria-pressed={player.aligned === "cut"} disabled={!can("cut")} onClick={() => align("cut")}>first cut</button>
+              <button type="button" aria-pressed={player.aligned === "path"} disabled={progress !== null} onClick={() => void alignAlong()}>path</button>
             </div>
             <label class="field">
               <span>by hand: the one beside is ahead by [s]</span>
-              <input type="number" step="0.01" value={player.path ? "" : Number(player.offset.toFixed(3))} onChange={(e) => {
-                setAligned("");
-                player.setOffset(Number(e.currentTarget.value) || 0);
-              }} />
+              <input type="number" step="0.01" value={player.path ? "" : Number(player.offset.toFixed(3))}
+                onChange={(e) => player.setOffset(Number(e.currentTarget.value) || 0)} />
             </label>
             {progress ? <Working what="comparing" done={progress[0]} total={progress[1]} onCancel={() => running.current?.abort()} />
               : <button type="button" class="main" onClick={() => void compare()}>Compare</button>}
@@ -86,14 +81,19 @@ export function Compare({ connection, player, listing, comparison, onComparison,
         )}
         <Problems error={error} />
       </Section>
-      {second && comparison && <Result comparison={comparison} onMoment={(time) => player.move(player.firstAt(time))} />}
+      {second && comparison && <Result comparison={comparison} onMoment={(time) => player.moveBeside(time, comparison)} />}
     </>
   );
 }
 
+const hasNone = (row: MeasureRow) => row.trainee_is.startsWith("no value");
+
 /** The worst moments and the measures; `onMoment` gets a time of the trainee's session. */
 export function Result({ comparison, onMoment }: { comparison: ComparisonResult; onMoment: (time: number) => void }) {
-  const { moments, measures } = comparison.comparison;
+  const { moments, measures, advice, less_done } = comparison.comparison;
+  const reasons = new Map<string, string[]>(); // why measures have no value
+  for (const row of measures)
+    if (hasNone(row)) reasons.set(row.trainee_is, [...(reasons.get(row.trainee_is) ?? []), row.measure]);
   return (
     <>
       {comparison.remarks.map((remark) => <p key={remark} class="warning">{remark}</p>)}
@@ -110,11 +110,15 @@ export function Result({ comparison, onMoment }: { comparison: ComparisonResult;
           ))}
         </ul>
       </Section>
+      <Section title="What to do better">
+        {less_done && <p class="hint">{less_done}</p>}
+        <ul class="advice">{advice.map((sentence) => <li key={sentence}>{sentence}</li>)}</ul>
+      </Section>
       <Section title="Measures">
         <table>
           <thead><tr><th scope="col">measure</th><th scope="col">expert</th><th scope="col">trainee</th><th scope="col">is</th></tr></thead>
           <tbody>
-            {measures.map((row) => (
+            {measures.filter((row) => !hasNone(row)).map((row) => (
               <tr key={row.key} title={row.meaning}>
                 <th scope="row">{row.measure} {row.unit !== "1" && <small>{row.unit}</small>}</th>
                 <td>{short(row.expert, 3)}</td>
@@ -124,6 +128,7 @@ export function Result({ comparison, onMoment }: { comparison: ComparisonResult;
             ))}
           </tbody>
         </table>
+        {[...reasons].map(([reason, names]) => <p key={reason} class="hint">{names.join(", ")}: {reason}</p>)}
       </Section>
     </>
   );

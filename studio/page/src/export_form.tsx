@@ -24,6 +24,8 @@ function number(text: string): number | undefined {
 const kSizes = ["1280x720", "1920x1080", "854x480", "1080x1080", "720x1280"];
 const kOverlays: [string, string][] = [["full", "full"], ["small", "small"], ["none", "none"]];
 const kAligned: [string, string][] = [["", "path, else first contact"], ["path", "path of the tool"], ["contact", "first contact"], ["cut", "first cut"], ["clock", "clock"]];
+/** How the command brings both together as they are seen here. */
+const kSeen: Record<string, string> = { path: "path", "contact begins": "contact", cut: "cut" };
 const kSlow: [string, string][] = [["cut", "cuts"], ["damage", "damage"], ["worst", "largest force and depth"]];
 
 /** A video of what is seen. */
@@ -33,7 +35,7 @@ export function ExportForm({ connection, player, look }: { connection: Connectio
   const [output, setOutput] = useState(() => session.path.replace(/\.ctpm$/, "") + ".mp4");
   const [from, setFrom] = useState("0"), [to, setTo] = useState("");
   const [speed, setSpeed] = useState("1"), [fps, setFps] = useState("30");
-  const [size, setSize] = useState(kSizes[0]), [overlay, setOverlay] = useState("full"), [align, setAlign] = useState("");
+  const [size, setSize] = useState(kSizes[0]), [overlay, setOverlay] = useState("full"), [align, setAlign] = useState(() => kSeen[player.aligned] ?? "");
   const [slow, setSlow] = useState<string[]>([]), [isDifferentShown, showDifferent] = useState(false);
   const [progress, setProgress] = useState<[number, number] | null>(null);
   const [result, setResult] = useState<Exported | null>(null);

@@ -27,7 +27,7 @@ export interface Imported {
   most: Vector;
 }
 
-const kUnits: Record<string, string> = { "0.001": "mm", "0.01": "cm", "1": "m", "0.0254": "in" };
+const kUnits: Record<string, string> = { "0.001": "mm", "0.01": "cm", "0.1": "dm", "1": "m", "0.0254": "in" };
 const kGap = 0.01; // between an organ that is added and the others [m]
 
 /** What was found in a mesh, what was done about it, and what remains. */
@@ -82,6 +82,7 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
   const [organ, setOrgan] = useState("");
   const [unit, setUnit] = useState("");
   const [radius, setRadius] = useState("");
+  const [hole, setHole] = useState("");
   const [scene, setScene] = useState(`${stem}-scene.json`);
   const [isAdded, setAdded] = useState(false);
   const [progress, setProgress] = useState<[string, number] | null>(null);
@@ -109,6 +110,7 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
       setProgress(["importing", 0]);
       const params = {
         mesh: uploaded.current, scene: target, organ, unit_m: unit ? Number(unit) : undefined, radius_m: radius ? Number(radius) / 1e3 : undefined,
+        largest_hole_m: hole ? Number(hole) / 1e3 : undefined,
       };
       const imported = await connection.call<Imported>("scene.import", params,
         { progress: (done, total) => setProgress([done < total ? "importing" : "fitting the stiffness", done / total]), signal });
@@ -142,6 +144,9 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
       <label class="field"><span>radius of the spheres [mm]; empty: as fine as holds 1 kHz here</span>
         <input type="number" min="0.1" step="0.1" value={radius} onInput={(e) => setRadius(e.currentTarget.value)} />
       </label>
+      <label class="field"><span>largest hole that is closed [mm]; empty: a tenth of its size</span>
+        <input type="number" min="0" step="1" value={hole} onInput={(e) => setHole(e.currentTarget.value)} />
+      </label>
       <label class="field"><span>scene to write</span>
         <input value={scene} onInput={(e) => setScene(e.currentTarget.value)} />
       </label>
@@ -154,7 +159,7 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
         )}
       <Problems error={error} />
       <ShownCommand text={command("import", file.name, "--organ", organ, ...(unit ? ["--unit", kUnits[unit]] : []),
-        ...(radius ? ["--radius-mm", radius] : []), "-o", target)} />
+        ...(radius ? ["--radius-mm", radius] : []), ...(hole ? ["--largest-hole-mm", hole] : []), "-o", target)} />
     </Section>
   );
 }

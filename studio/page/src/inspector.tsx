@@ -1,3 +1,4 @@
+import * as three from "three";
 import type { AuthorScene } from "./author_scene";
 import { NumberField, VectorField } from "./fields";
 import type { Values } from "./gizmos";
@@ -48,6 +49,7 @@ export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScen
         <>
           {vector(item.isWritten ? "taken up at" : "taken up at (not written: above the organs)", ["at_mm"], place)}
           {item.isWritten && vector("pointing", ["pointing"], [0, 0, -1], "direction", 0.1)}
+          {item.isWritten && item.shape === "scalpel" && vector("facing, along the blade", ["facing"], new three.Vector3(1, 0, 0).applyQuaternion(item.turn).toArray().map((x) => Math.round(1e3 * x) / 1e3 + 0), "direction", 0.1)}
           {item.shape === "ball" ? number("radius", ["radius_mm"], mm(item.size.x)) : number("length of the blade", ["blade_length_mm"], 40, "mm", 1)}
         </>
       )}

@@ -4,27 +4,19 @@ import { Connection, onNewToken, takeToken } from "./connection";
 import { Author } from "./author";
 import { Empty } from "./parts";
 import type { Listing } from "./protocol";
-import { type Place, Review } from "./review";
+import { hashOf, type Place, readHash, type Room } from "./place";
+import { Review } from "./review";
 import { Train } from "./train";
 
-type Room = "author" | "train" | "review";
 const kRooms: [Room, string][] = [["author", "Author"], ["train", "Train"], ["review", "Review"]];
 
 function readPlace(): { room: Room; place: Place } {
-  const hash = new URLSearchParams(location.hash.slice(1));
-  const time = hash.get("t");
-  return {
-    room: kRooms.find(([room]) => room === hash.get("room"))?.[0] ?? "author",
-    place: { session: hash.get("session") ?? undefined, beside: hash.get("beside") ?? undefined, time: time === null ? undefined : Number(time) || 0 },
-  };
+  const { room: named, place } = readHash(location.hash.slice(1));
+  return { room: kRooms.find(([room]) => room === named)?.[0] ?? "author", place };
 }
 
 function writePlace(room: Room, place: Place): void {
-  const hash = new URLSearchParams({ room });
-  if (place.session) hash.set("session", place.session);
-  if (place.beside) hash.set("beside", place.beside);
-  if (place.time !== undefined) hash.set("t", place.time.toFixed(3));
-  history.replaceState(null, "", `#${hash.toString()}`);
+  history.replaceState(null, "", `#${hashOf(room, place)}`);
 }
 
 let token = takeToken();
@@ -91,7 +83,7 @@ function App() {
             <Author connection={connection} listing={listing} onChanged={list} onTry={(scene, text) => go("train", { scene, text })} />
           ) : (
             <Train connection={connection} listing={listing} tryScene={place.scene} tryText={place.text} onChanged={list}
-              onReview={(session, beside, time) => go("review", beside ? { session, beside, besideTime: time } : { session, time })} />
+              onReview={(there) => go("review", there)} />
           )
         ) : (
           <Empty title="Connecting"><p>to the program on this machine.</p></Empty>

@@ -3,18 +3,22 @@ import type { Connection } from "./connection";
 import { Problems, Section } from "./parts";
 import type { Player } from "./player";
 import type { Note, Notes } from "./protocol";
+import { hashOf } from "./place";
 import { seconds } from "./text";
 
 /** Notes at moments of a session, kept in a file beside it. */
-export function NotesPanel({ connection, player, onNotes }: { connection: Connection; player: Player; onNotes: (notes: Note[]) => void }) {
-  const path = player.tracks.get(0)!.session.path;
+export function NotesPanel({ connection, player, onNotes }: { connection: Connection; player: Player; onNotes: (notes: Note[], stage: number) => void }) {
+  const second = player.tracks.get(1)?.session.path;
+  const [wanted, setWanted] = useState(0);
+  const stage = second ? wanted : 0, { path, info } = player.tracks.get(stage)!.session;
+  const time = player.timeOf(stage), isIn = time >= 0 && time <= info.duration_s;
   const [notes, setNotes] = useState<Notes | null>(null);
   const [text, setText] = useState("");
   const [error, setError] = useState<Error | null>(null);
   const [copied, setCopied] = useState("");
   const take = (read: Notes) => {
     setNotes(read);
-    onNotes(read.notes);
+    onNotes(read.notes, stage);
   };
   useEffect(() => {
     connection.call<Notes>("notes.read", { path }).then(take, setError);
@@ -31,13 +35,12 @@ export function NotesPanel({ connection, player, onNotes }: { connection: Connec
     }
   };
   const add = async () => {
-    if (!text.trim() || !notes) return;
-    const list = [...notes.notes, { time_s: player.time, text: text.trim() }].sort((a, b) => a.time_s - b.time_s);
+    if (!text.trim() || !notes || !isIn) return;
+    const list = [...notes.notes, { time_s: time, text: text.trim() }].sort((a, b) => a.time_s - b.time_s);
     if (await write(list)) setText("");
   };
   const copyLink = () => {
-    const place = new URLSearchParams({ room: "review", session: path, t: player.time.toFixed(3) });
-    const link = `${location.origin}/#${place.toString()}`;
+    const link = `${location.origin}/#${hashOf("review", player.place)}`;
     setCopied(link);
     void navigator.clipboard?.writeText(link).catch(() => {});
   };
@@ -45,20 +48,28 @@ export function NotesPanel({ connection, player, onNotes }: { connection: Connec
   return (
     <>
       <Section title="Notes">
+        {second && (
+          <label class="field">
+            <span>of</span>
+            <select value={stage} onChange={(e) => setWanted(Number(e.currentTarget.value))}>
+              {[0, 1].map((each) => <option key={each} value={each}>{player.tracks.get(each)!.session.path}</option>)}
+            </select>
+          </label>
+        )}
         <label class="field">
-          <span>at {seconds(player.time)}</span>
+          <span>at {seconds(time)}{!isIn && ", when this session does not run"}</span>
           <textarea rows={3} value={text} onInput={(e) => setText(e.currentTarget.value)}
             onKeyDown={(e) => {
               if (e.key === "Enter" && (e.ctrlKey || e.metaKey)) void add();
             }} />
         </label>
-        <button type="button" class="main" disabled={!text.trim() || !notes} onClick={() => void add()}>Add note</button>
+        <button type="button" class="main" disabled={!text.trim() || !notes || !isIn} onClick={() => void add()}>Add note</button>
         <Problems error={error} />
         {notes?.notes.length === 0 && <p class="hint">No notes yet. They are kept in a file beside the session, which never changes.</p>}
         <ul class="jumps">
           {notes?.notes.map((note, i) => (
             <li key={i}>
-              <button type="button" onClick={() => player.move(note.time_s)}><span class="number">{seconds(note.time_s)}</span> {note.text}</button>
+              <button type="button" onClick={() => player.move(stage === 0 ? note.time_s : player.firstAt(note.time_s))}><span class="number">{seconds(note.time_s)}</span> {note.text}</button>
               <button type="button" class="quiet" aria-label={`Delete the note at ${seconds(note.time_s)}`}
                 onClick={() => void write(notes.notes.filter((_, k) => k !== i))}>×</button>
             </li>

@@ -1,6 +1,7 @@
 import type { Binary, Connection } from "./connection";
-import type { Drawing, Frame, OpenedSession, Seen, SessionInfo, TimelineData, Shapes } from "./protocol";
+import type { ComparisonResult, Drawing, Frame, OpenedSession, Seen, SessionInfo, TimelineData, Shapes } from "./protocol";
 import { freeCamera, isPlain, type Look, lookParameters, steppedForward } from "./look";
+import type { Place } from "./place";
 import { StageScene } from "./stage_scene";
 import { firstCamera, type Viewer } from "./viewer";
 
@@ -14,6 +15,7 @@ export interface Track {
 
 /** Longest step of a playback [s]: where the program simulates slower, playing becomes slower instead of jumping. */
 const kLongestStep = 0.1;
+const kTogether = 1e-3; // of two times [s]
 const kTimelinePoints = 12000; // so that a part of a long session can be looked at closely
 
 /** When an event of that kind first happened [s]; null: never. */
@@ -28,6 +30,7 @@ export class Player {
   time = 0; // of stage 0 [s]
   speed = 1;
   offset = 0; // time of stage 1 where that of stage 0 is 0 [s]
+  aligned = ""; // event or "path" at which both sessions were brought together; empty: by hand
   isPlaying = false;
   pictureAfter: number | null = null; // time from the last move to its picture, a glimpse or not [ms]
   replayedAfter: number | null = null; // the same, to the replayed one [ms]
@@ -109,6 +112,7 @@ export class Player {
   /** Aligns both sessions where the tools were at the same place of the path. */
   alignAlong(path: [number, number][]): void {
     this.path = path.length > 0 ? path : null;
+    this.aligned = this.path ? "path" : "";
     this.move(this.time);
     this.onChange();
   }
@@ -158,8 +162,14 @@ export class Player {
     return seen;
   }
 
+  /** What an address needs to lead here again. */
+  get place(): Place {
+    const [first, second] = [0, 1].map((stage) => this.tracks.get(stage)?.session.path);
+    return { session: first, beside: second, ahead: second && this.besideAt(this.time) - this.time, time: this.time } as Place;
+  }
+
   setOffset(offset: number): void {
-    this.offset = offset, this.path = null;
+    this.offset = offset, this.path = null, this.aligned = "";
     this.move(this.time);
     this.onChange();
   }
@@ -170,7 +180,18 @@ export class Player {
     const here = first ? firstOf(first.session.info, kind) : null, there = second ? firstOf(second.session.info, kind) : null;
     if (here === null || there === null) return null;
     this.setOffset(there - here);
+    this.aligned = kind;
+    this.onChange();
     return here;
+  }
+
+  /** Moves to a time of the session beside. Where the first one has nothing that belongs to it, both are brought together
+      there, at the same place of the path. */
+  moveBeside(time: number, { path_s }: ComparisonResult): void {
+    const here = this.firstAt(time), first = this.tracks.get(0)!.session.info.duration_s;
+    const belongs = here >= 0 && here <= first && Math.abs(this.besideAt(here) - time) < kTogether;
+    if (!belongs && path_s.length > 0) this.setOffset(time - Math.min(Math.max(alongPath(path_s, time, 1), 0), first));
+    this.move(this.firstAt(time));
   }
 
   play(): void {

@@ -146,7 +146,7 @@ export interface MeasureRow {
 }
 
 export interface ComparisonResult {
-  comparison: { scene: string; force_limit_n?: number; force_limit_from?: string; measures: MeasureRow[]; moments: Moment[] };
+  comparison: { scene: string; force_limit_n?: number; force_limit_from?: string; measures: MeasureRow[]; moments: Moment[]; advice: string[]; less_done?: string };
   remarks: string[];
   path_s: [number, number][];
 }
@@ -180,6 +180,8 @@ export interface EndedTraining {
   tick_time_p99_s?: number;
   pose_wait_p50_s?: number; // from when a pose was sent to the tick that took it
   pose_wait_p99_s?: number;
+  pose_way_p99_s?: number; // of it, until the program had read it
+  poses_within_5ms?: number; // share
 }
 
 export interface OrganTriangles {

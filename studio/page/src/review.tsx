@@ -7,29 +7,16 @@ import { freeCamera, isFree, kPlainLook, type Look, mirrored, planeOf } from "./
 import { LegendBar, LookFields } from "./look_fields";
 import { NotesPanel } from "./notes";
 import { Empty, Problems, Readings, Section, ShownCommand, Working } from "./parts";
+import type { Place } from "./place";
 import { Player } from "./player";
 import type { ComparisonResult, Legend, Listing, Note, SessionEvent } from "./protocol";
 import { Mark, Timeline } from "./timeline";
 import { behind, bytes, command, millimetres, newtons, seconds } from "./text";
-import { Viewer } from "./viewer";
+import { kTurns, Viewer } from "./viewer";
 
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4];
 const kPanels = ["moment", "compare", "notes", "export"] as const;
-/** What keys do to the view: right and up [rad], times as far away. */
-const kTurns: { [key: string]: [number, number, number] } = {
-  a: [-0.1, 0, 1], d: [0.1, 0, 1], w: [0, 0.1, 1], s: [0, -0.1, 1], "+": [0, 0, 0.9], "=": [0, 0, 0.9], "-": [0, 0, 1 / 0.9],
-};
 type Panel = (typeof kPanels)[number];
-
-/** Where the page is, in its address. */
-export interface Place {
-  scene?: string; // to try at once, in Train
-  text?: string; // of that scene, as its author has it now
-  session?: string;
-  beside?: string;
-  time?: number;
-  besideTime?: number; // in place of time: of the session beside, aligned at first contact [s]
-}
 
 /** What happened in a session; late ticks are counted elsewhere. */
 function shownEvents(events: SessionEvent[]): SessionEvent[] {
@@ -48,7 +35,7 @@ export function Review({ connection, listing, place, onPlace }: {
   const [version, setVersion] = useState(0);
   const [error, setError] = useState<Error | null>(null);
   const [panel, setPanel] = useState<Panel>("moment");
-  const [notes, setNotes] = useState<Note[]>([]);
+  const [notes, setNotes] = useState<{ list: Note[]; stage: number }>({ list: [], stage: 0 });
   const [comparison, setComparison] = useState<ComparisonResult | null>(null);
   const [look, setLook] = useState<Look>(kPlainLook);
   const [legend, setLegend] = useState<Legend | null>(null);
@@ -106,8 +93,10 @@ export function Review({ connection, listing, place, onPlace }: {
     void (async () => {
       await open(0, place.session);
       if (place.beside) await open(1, place.beside);
-      if (place.beside) player.alignAt("contact begins");
-      if (place.besideTime !== undefined) player.move(player.firstAt(place.besideTime));
+      if (place.beside && place.ahead !== undefined) player.setOffset(place.ahead);
+      else if (place.beside) player.alignAt("contact begins");
+      if (place.comparison) setComparison(place.comparison), setPanel("compare");
+      if (place.comparison && place.besideTime !== undefined) player.moveBeside(place.besideTime, place.comparison);
       else if (place.time !== undefined) player.move(place.time);
     })();
   }, [player]);
@@ -140,7 +129,7 @@ export function Review({ connection, listing, place, onPlace }: {
   useEffect(() => {
     if (!player || !first) return;
     const timer = setInterval(() => {
-      if (!player.isPlaying) onPlace({ session: first.session.path, beside: second?.session.path, time: player.time });
+      if (!player.isPlaying) onPlace(player.place);
     }, 300);
     return () => clearInterval(timer);
   }, [player, first, second]);
@@ -170,9 +159,9 @@ export function Review({ connection, listing, place, onPlace }: {
     const { events, tick_s } = first.session.info;
     return [
       ...shownEvents(events).map((e) => ({ time: e.tick * tick_s, kind: e.kind, text: e.text })),
-      ...notes.map((note) => ({ time: note.time_s, kind: "note", text: note.text })),
+      ...notes.list.map((note) => ({ time: notes.stage === 0 ? note.time_s : player!.firstAt(note.time_s), kind: "note", text: note.text })),
     ];
-  }, [first, notes]);
+  }, [first, notes, version]);
 
   return (
     <div class="room review">
@@ -203,8 +192,8 @@ export function Review({ connection, listing, place, onPlace }: {
         )}
         {first && (
           <div class="captions">
-            <span class="first"><b>{first.session.path}</b></span>
-            {second && <span class="second"><b>{second.session.path}</b></span>}
+            <span class="first"><b>{first.session.path}{second && ` ${seconds(player!.timeOf(0))}`}</b></span>
+            {second && <span class="second"><b>{second.session.path} {seconds(player!.timeOf(1))}</b></span>}
           </div>
         )}
         {legend && <LegendBar legend={legend} />}
@@ -231,7 +220,7 @@ export function Review({ connection, listing, place, onPlace }: {
                   {kSpeeds.map((speed) => <option key={speed} value={speed}>{speed} ×</option>)}
                 </select>
               </label>
-              <output class="clock">{seconds(player.time)} <small>of {seconds(first.session.info.duration_s)}</small></output>
+              <output class="clock">{seconds(player.time)} <small>of {seconds(player.span.to)}</small></output>
               {player.isPlaying && player.reached < 0.9 * player.speed && (
                 <span class="hint">plays at {player.reached.toFixed(2)} ×: this machine simulates no faster</span>
               )}
@@ -255,12 +244,12 @@ export function Review({ connection, listing, place, onPlace }: {
                 <Compare connection={connection} player={player} listing={listing} comparison={comparison} onComparison={setComparison}
                   onBeside={(path) => open(1, path)} />
               )}
-              {panel === "notes" && <NotesPanel connection={connection} player={player} onNotes={setNotes} />}
+              {panel === "notes" && <NotesPanel connection={connection} player={player} onNotes={(list, stage) => setNotes({ list, stage })} />}
               {panel === "export" && <ExportForm key={first.session.path} connection={connection} player={player} look={look} />}
             </div>
           </>
         ) : (
-          <p class="hint">Space plays, ← and → move by 10 ms, with Shift by 100 ms. The mouse turns the view and its wheel comes closer; so do A, D, W, S, + and −.</p>
+          <p class="hint">Space plays, ← and → move by 10 ms, with Shift by 100 ms. The mouse turns the view and its wheel comes closer; so do A, D, W, S, + and −. Comma and full stop zoom the timeline, 0 shows all of it.</p>
         )}
       </aside>
     </div>

@@ -119,7 +119,7 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
   /** Shows a part that is so many times as long, around a time. */
   const zoomBy = (factor: number, around: number) => {
     const length = Math.max((to - from) * factor, kLeastShown), whole = span.to - span.from;
-    if (length >= whole) return setZoom(null);
+    if (length >= (1 - 1e-6) * whole) return setZoom(null);
     const begin = Math.min(Math.max(around - (around - from) * (length / (to - from)), span.from), span.to - length);
     setZoom({ from: begin, to: begin + length });
   };
@@ -146,8 +146,8 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
     const press = (event: KeyboardEvent) => {
       if ((event.target as HTMLElement).closest("input:not([type=range]), textarea, select") || event.ctrlKey || event.metaKey || event.altKey) return;
       const middle = Math.min(Math.max(player.time, from), to);
-      if (event.key === "+") zoomBy(1 / kZoomStep, middle);
-      else if (event.key === "-") zoomBy(kZoomStep, middle);
+      if (event.key === ".") zoomBy(1 / kZoomStep, middle);
+      else if (event.key === ",") zoomBy(kZoomStep, middle);
       else if (event.key === "0") setZoom(null);
       else return;
       event.preventDefault();
@@ -181,8 +181,8 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
         <div ref={head} class="playhead" hidden={player.time < from || player.time > to} />
       </div>
       <div class="zoom" role="group" aria-label="Zoom of the timeline">
-        <button type="button" title="+, or the wheel" onClick={() => zoomBy(1 / kZoomStep, Math.min(Math.max(player.time, from), to))}>zoom in</button>
-        <button type="button" title="-" disabled={!zoom} onClick={() => zoomBy(kZoomStep, Math.min(Math.max(player.time, from), to))}>zoom out</button>
+        <button type="button" title="full stop, or the wheel" onClick={() => zoomBy(1 / kZoomStep, Math.min(Math.max(player.time, from), to))}>zoom in</button>
+        <button type="button" title="comma" disabled={!zoom} onClick={() => zoomBy(kZoomStep, Math.min(Math.max(player.time, from), to))}>zoom out</button>
         {zoom && <button type="button" title="0" onClick={() => setZoom(null)}>all</button>}
         {zoom && <output>{seconds(from)} to {seconds(to)}</output>}
       </div>

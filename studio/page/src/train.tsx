@@ -6,7 +6,9 @@ import { deviceParameters, deviceWords, storedDevice, storeDevice } from "./devi
 import { Empty, Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { type ComparisonResult, type EndedTraining, type Listing, type Motion, problemText } from "./protocol";
 import { behind, command, millimetres, newtons, seconds } from "./text";
-import { Trainer } from "./trainer";
+import type { Place } from "./place";
+import { ForceSound } from "./sound";
+import { kGhostAhead, Trainer } from "./trainer";
 import { Viewer } from "./viewer";
 
 type Phase = "choose" | "loading" | "running" | "ended";
@@ -22,7 +24,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
   listing: Listing;
   tryScene: string | undefined; // at once, and nothing is recorded
   tryText: string | undefined; // of that scene, as its author has it now
-  onReview: (session: string, beside: string | undefined, time: number) => void;
+  onReview: (place: Place) => void;
   onChanged: () => void;
 }) {
   const canvas = useRef<HTMLCanvasElement>(null);
@@ -37,6 +39,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
   const [, setTick] = useState(0);
   const last = useRef<{ x: number; y: number } | null>(null);
   const loading = useRef<AbortController | null>(null);
+  const sound = useRef(new ForceSound());
 
   useEffect(() => {
     if (!canvas.current) return;
@@ -55,6 +58,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
     made.onFailing = (problem) => setError(new Error(`Recording fails now: ${problem}`));
     made.onEnded = (content) => {
       document.exitPointerLock?.();
+      sound.current.end();
       setEnded(content);
       setPhase("ended");
       onChanged();
@@ -62,6 +66,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
     setTrainer(made);
     return () => {
       void made.end().catch(() => {});
+      sound.current.end();
       viewer.dispose();
     };
   }, [connection]);
@@ -97,6 +102,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
     const press = (event: KeyboardEvent) => {
       if ((event.target as HTMLElement).closest("input, textarea, select") || event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.key === "Escape") void trainer.end();
+      else if (event.key.toLowerCase() === "m") sound.current.switch(), setTick((t) => t + 1);
       else if (!trainer.press(event.key, event.shiftKey)) return;
       event.preventDefault();
     };
@@ -140,6 +146,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
   const hands = frame?.second ? [frame, frame.second] : frame ? [frame] : [];
   const force = Math.hypot(...(trainer?.ownFrame?.force ?? [0]));
   const limit = view?.damage_force_n || 10;
+  sound.current.sound(force / limit);
 
   return (
     <div class="room train">
@@ -241,7 +248,25 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
                 ["frames missed", String(frame?.missed ?? 0)],
               ]} />
             </Section>
-            <Section title="Expert"><ExpertChoice listing={listing} expert={expert} onExpert={setExpert} /></Section>
+            <Section title="Expert">
+              <ExpertChoice listing={listing} expert={expert} onExpert={setExpert} />
+              {expert && trainer && (
+                <label class="field">
+                  <span>the ghost is</span>
+                  <select value={trainer.ghostAhead} onChange={(e) => {
+                    trainer.ghostAhead = Number(e.currentTarget.value);
+                    setTick((t) => t + 1);
+                  }}>
+                    <option value={kGhostAhead}>a little ahead</option>
+                    <option value={0}>where you are on its path</option>
+                  </select>
+                </label>
+              )}
+            </Section>
+            <label class="tick"><input type="checkbox" checked={sound.current.isOn} onChange={() => {
+              sound.current.switch();
+              setTick((t) => t + 1);
+            }} /> <span>the force as a sound <kbd>M</kbd></span></label>
           </>
         )}
         {phase === "ended" && ended && (
@@ -271,7 +296,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
   ended: EndedTraining;
   expert: string;
   onExpert: (path: string) => void;
-  onReview: (session: string, beside: string | undefined, time: number) => void;
+  onReview: (place: Place) => void;
   onAgain: () => void;
 }) {
   const [verdict, setVerdict] = useState<{ same: boolean; text: string } | null>(null);
@@ -307,10 +332,11 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
             ["behind the clock", behind(ended.slip_s ?? 0, ended.slip_max_s ?? 0)],
             ["tick p50, p99", `${(1e3 * (ended.tick_time_p50_s ?? 0)).toFixed(2)}, ${(1e3 * (ended.tick_time_p99_s ?? 0)).toFixed(2)} ms`],
             ["hand to tick p50, p99", `${(1e3 * (ended.pose_wait_p50_s ?? 0)).toFixed(1)}, ${(1e3 * (ended.pose_wait_p99_s ?? 0)).toFixed(1)} ms`],
+            ["within 5 ms", `${(1e2 * (ended.poses_within_5ms ?? 0)).toFixed(1)} %`],
           ]} />
         )}
         <button type="button" onClick={onAgain}>Train again</button>
-        {ended.path && <button type="button" onClick={() => onReview(ended.path, undefined, 0)}>Open in Review</button>}
+        {ended.path && <button type="button" onClick={() => onReview({ session: ended.path, time: 0 })}>Open in Review</button>}
       </Section>
       {ended.path && (
         <Section title="Verify and compare">
@@ -322,7 +348,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
           <ShownCommand text={expert ? command("compare", expert, ended.path, "-o", "report") : command("verify", ended.path)} />
         </Section>
       )}
-      {comparison && <Result comparison={comparison} onMoment={(time) => onReview(expert, ended.path, time)} />}
+      {comparison && <Result comparison={comparison} onMoment={(besideTime) => onReview({ session: expert, beside: ended.path, besideTime, comparison })} />}
     </>
   );
 }

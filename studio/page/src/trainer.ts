@@ -7,6 +7,7 @@ import { StageScene } from "./stage_scene";
 import { firstCamera, type Viewer } from "./viewer";
 
 export const kTrainStage = 2;
+export const kGhostAhead = 0.25; // [s]
 const kMostSpeed = 0.4; // of the hand that is sent [m/s]
 const kGuardSpeed = 0.6; // faster motion counts as a jump [m/s]
 const kInterval = 8; // between two poses [ms]
@@ -17,7 +18,7 @@ const kPadSpeed = 0.06, kPadTurn = Math.PI / 2; // of a stick or trigger that is
 const kHalfGain = 6; // force at which the hand follows the pointer half as far [N]
 const kEdge = 0.93; // of the picture that the hand may reach
 const kSteep = 0.85; // cosine between up and the line of sight, beyond which the viewer looks from above
-const kLookAhead = 1, kAhead = 0.25; // of the expert's motion [s]
+const kLookAhead = 1; // of the expert's motion [s]
 const kNear = 0.03; // to the expert's path, to have reached it [m]
 const kMargin = 0.06; // around the organs that the hand may use [m]
 const kApart = 0.03; // of two hands from the middle [m]
@@ -39,6 +40,7 @@ export class Trainer {
   started: number | null = null; // when the hand was taken up [ms]
   poses = 0; // sent so far
   hasGamepad = false;
+  ghostAhead = kGhostAhead; // of the place on the expert's path that the tool has reached [s]
   awaited = ""; // where the device is that leads; empty: the page leads
   onWaiting: (why: string) => void = () => {}; // the device has sent nothing of use
   onFrame: () => void = () => {};
@@ -304,7 +306,7 @@ export class Trainer {
       const away = Math.hypot(poses[i][1] - tool[0], poses[i][2] - tool[1], poses[i][3] - tool[2]);
       if (poses[i][0] >= 0 && away < best) best = away, this.reached = i;
     }
-    return poses[Math.min(poses.length - 1, this.reached + Math.round(kAhead / interval_s))] ?? null;
+    return poses[Math.min(poses.length - 1, this.reached + Math.round(this.ghostAhead / interval_s))] ?? null;
   }
 
   private showGhost(frame: Frame): void {

@@ -22,6 +22,11 @@ export function firstCamera(view: SceneView): CameraView | undefined {
 }
 
 /** Draws up to two scenes side by side with one camera, whenever something changed. */
+/** What keys do to a view: right and up [rad], times as far away. */
+export const kTurns: { [key: string]: [number, number, number] } = {
+  a: [-0.1, 0, 1], d: [0.1, 0, 1], w: [0, 0.1, 1], s: [0, -0.1, 1], "+": [0, 0, 0.9], "=": [0, 0, 0.9], "-": [0, 0, 1 / 0.9],
+};
+
 export class Viewer {
   readonly camera = new three.PerspectiveCamera(32, 16 / 9, 0.01, 10);
   readonly controls: OrbitControls;

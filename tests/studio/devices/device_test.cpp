@@ -229,6 +229,18 @@ TEST_F(DeviceSession, ItCountsHowLongPosesWaitForTheirTick) {
   EXPECT_LT(wait(6).second, 0.2e-3);
   EXPECT_EQ(wait(7).first, "device_pose_wait_p99_s");
   EXPECT_NEAR(wait(7).second, 0.75e-3, 0.06e-3);
+  EXPECT_EQ(wait(9).first, "device_poses_within_5ms");
+  EXPECT_EQ(wait(9).second, 1);
+  // Of poses that are read late the way is told, and that they missed.
+  for (int i = 0; i < 100; ++i) {
+    devices::DeviceReport late = report(kHome);
+    late.arrival -= 8e-3, late.on_way = 8e-3;
+    device_->waiting.push_back(late);
+    tick();
+  }
+  EXPECT_EQ(wait(8).first, "device_pose_way_p99_s");
+  EXPECT_NEAR(wait(8).second, 8e-3, 0.11e-3);
+  EXPECT_NEAR(wait(9).second, 0.5, 0.02);
 }
 
 TEST_F(DeviceSession, AFaultThatComesAndGoesIsNotedAFewTimesASecondAtMost) {

@@ -106,6 +106,24 @@ test("a mesh of 100,000 triangles is imported, and an import that is stopped lea
   await picture(page, "author-large");
 });
 
+test("a hole that is too wide is told, and closed when its author says so", async () => {
+  const lines = readFileSync(join(paths.source, "scenes", "organs", "kidney.obj"), "utf8").trimEnd().split("\n");
+  const x = lines.filter((line) => line.startsWith("v ")).map((line) => Number(line.split(/\s+/)[1])), least = Math.min(...x), most = Math.max(...x);
+  const mesh = Buffer.from(lines.filter((line) => !line.startsWith("f ") || x[Number.parseInt(line.split(/\s+/)[1]) - 1] < most - 0.15 * (most - least)).join("\n") + "\n");
+  await page.setInputFiles(".pick input", { name: "holed.obj", mimeType: "model/obj", buffer: mesh });
+  await page.locator("aside label:has-text('radius') input").fill("5");
+  await button("Import", "aside").click();
+  await page.waitForSelector("aside .problems:has-text('wider than')");
+  const told = await page.locator("aside .problems").innerText();
+  assert.match(told, /^holed\.obj: /);
+  await picture(page, "author-holed");
+  await page.locator("aside label:has-text('largest hole') input").fill(/largest_hole_mm (\d+)/.exec(told)[1]);
+  assert.match(await page.locator("aside .command code").innerText(), /--largest-hole-mm \d+/);
+  await button("Import", "aside").click();
+  await page.waitForSelector("aside .good:has-text('holed-scene.json')");
+  await settled();
+});
+
 test("a mesh becomes a scene, as by the command, and what was repaired is listed", async () => {
   // One triangle is missing, and one is there twice.
   const lines = readFileSync(join(paths.source, "scenes", "organs", "kidney.obj"), "utf8").trimEnd().split("\n");
@@ -296,6 +314,10 @@ test("a camera is the view that was orbited to", async () => {
   await drag({ x: view.x + 0.9 * view.width, y: view.y + 0.8 * view.height }, { x: 120, y: 0 }, 10);
   await page.waitForTimeout(200);
   await picture(page, "author-camera");
+  const turned = await scene();
+  await page.locator(".view canvas").focus();
+  for (let i = 0; i < 4; ++i) await page.keyboard.press("d");
+  assert.deepEqual(await scene(), turned, "keys turn the view, and nothing of the scene");
   await button("Use this view", "#panel").click();
   const again = (await save()).cameras.at(-1);
   assert.notDeepEqual(again.eye_mm, made.eye_mm);

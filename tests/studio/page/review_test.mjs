@@ -61,6 +61,17 @@ test("a session opens, and any moment of it is a press away", async () => {
   await picture(page, "review-moment");
 });
 
+test("full stop and comma zoom the timeline, + and - the view alone", async () => {
+  await page.locator(".view > canvas").focus();
+  await page.keyboard.press("+");
+  await page.keyboard.press("-");
+  assert.equal(await page.locator(".zoom output").count(), 0);
+  await page.keyboard.press(".");
+  await page.waitForSelector(".zoom output");
+  await page.keyboard.press(",");
+  await page.waitForSelector(".zoom output", { state: "detached" });
+});
+
 test("keys move and play it", async () => {
   const before = await clock();
   await page.locator(".view > canvas").focus();
@@ -207,8 +218,14 @@ test("two sessions beside each other, compared", async () => {
   await page.click("#panel button.main");
   await page.waitForSelector("#panel table");
   const worst = await page.locator("#panel .jumps button").first().innerText();
+  // It is after the first session's end: both are shown at the same place of the path.
+  assert.ok(Number.parseFloat(worst) - offset > expert.duration_s);
   await page.locator("#panel .jumps button").first().click();
-  await page.waitForFunction((seconds) => Math.abs(Number.parseFloat(document.querySelector(".clock").textContent) - seconds) < 0.01, Number.parseFloat(worst) - offset);
+  await page.waitForFunction((shown) => document.querySelector(".captions .second").textContent.includes(shown), ` ${Number.parseFloat(worst).toFixed(2)}`);
+  assert.ok((await clock()) <= expert.duration_s);
+  // The advice is the report's.
+  const advice = JSON.parse(ctpm(folder, "compare", kExpert, kClumsy, "--json").out).advice;
+  assert.deepEqual(await page.locator("#panel .advice li").allInnerTexts(), advice);
   const printed = (await command).out;
   // Without their units, which the page writes smaller.
   const names = await page.locator("#panel tbody th").evaluateAll((cells) => cells.map((cell) => cell.firstChild.textContent.trim()));
@@ -221,6 +238,7 @@ test("two sessions beside each other, compared", async () => {
 
 test("notes stay, and a link leads to the moment", async () => {
   const session = readFileSync(join(folder, kExpert));
+  await page.click("#panel button:has-text('first contact')");
   await page.click("#tab-notes");
   await page.locator(".view > canvas").focus();
   await page.keyboard.press("Home");
@@ -235,10 +253,22 @@ test("notes stay, and a link leads to the moment", async () => {
   await page.click("#panel button:has-text('Copy the link')");
   const link = await page.locator("#panel .hint code").innerText();
   assert.ok(!link.includes("token"));
+  const both = await page.locator(".captions").innerText();
+  assert.match(both, new RegExp(`${kExpert}.*${kClumsy}`, "s"));
   await picture(page, "review-notes");
   await page.goto("about:blank");
   await page.goto(link);
   await page.waitForFunction((shown) => document.querySelector(".clock")?.textContent.startsWith(shown), time.toFixed(3));
+  await page.waitForFunction((shown) => document.querySelector(".captions").innerText === shown, both);
+  // A note of the session beside lies beside that one, at its own time.
+  await page.click("#tab-notes");
+  await page.locator("#panel select").selectOption(kClumsy);
+  await page.fill("#panel textarea", "hurried");
+  await page.click("#panel button.main");
+  await page.waitForSelector("#panel .jumps button:has-text('hurried')");
+  const beside = JSON.parse(readFileSync(join(folder, "kidney-cut-clumsy.notes.json"), "utf8")).notes;
+  assert.ok(both.includes(beside[0].time_s.toFixed(3)) && beside[0].time_s !== time, `${both} and ${beside[0].time_s}`);
+  assert.ok(await page.locator(`.mark.note[title*='hurried']`).count());
 });
 
 test("an export is the one that the shown command makes, and can be cancelled", async () => {
@@ -258,7 +288,8 @@ test("an export is the one that the shown command makes, and can be cancelled", 
   await page.locator("#panel select").selectOption(kClumsy);
   await page.waitForSelector(".captions .second");
   await page.click("#tab-export");
-  assert.doesNotMatch(await page.locator("#panel .command code").innerText(), /--(align|overlay|slow-at|fps|size|speed|from-s|to-s)/);
+  assert.match(await page.locator("#panel .command code").innerText(), /--align contact/);
+  assert.doesNotMatch(await page.locator("#panel .command code").innerText(), /--(overlay|slow-at|fps|size|speed|from-s|to-s)/);
   await field("file in the folder").fill("both.avi");
   await field("from [s]").fill("2.2");
   await field("to [s]").fill("2.5");

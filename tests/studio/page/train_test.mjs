@@ -64,7 +64,24 @@ test("names in a scene are text", async () => {
   await page.click("button:has-text('End')");
   await page.waitForSelector("button:has-text('Train again')");
   assert.equal(await page.locator("main img").count(), 0);
+  // In the other rooms too: lists, handles and fields of a scene, captions and panels of its session.
   await page.click("button:has-text('Train again')");
+  await page.locator("aside input").first().fill("html.ctpm");
+  await page.click(".list button:has-text('html')");
+  await page.waitForSelector(".view.running");
+  await page.waitForTimeout(300);
+  await page.keyboard.press("Escape");
+  await page.click("button:has-text('Open in Review')");
+  await page.waitForSelector(".review .clock"); // nothing was touched: there are no curves
+  assert.match(await page.locator(".view > canvas").getAttribute("aria-label"), /<img src=x/);
+  assert.equal(await page.locator("main img, main b[onclick]").count(), 0);
+  await page.click("header nav button:has-text('Author')");
+  await page.click(".scenes button:has-text('html')");
+  await page.waitForSelector(".handle:has(span:text-is('<b onclick=alert(2)>ball</b>'))", { state: "attached" }); // out of the picture
+  await page.click(".objects button:has-text('<img src=x')");
+  assert.equal(await page.locator(".objects button:has-text('<img src=x onerror=alert(1)>')").count(), 1);
+  assert.equal(await page.locator("main img, main b[onclick]").count(), 0);
+  await page.click("header nav button:has-text('Train')");
 });
 
 test("the mouse leads one of two hands, and the other one stays", async () => {
@@ -102,10 +119,22 @@ test("the mouse presses, cuts and records", async () => {
   await page.waitForSelector(".view.running");
   const box = await page.locator(".view canvas").boundingBox();
   const middle = { x: box.x + box.width / 2, y: box.y + 60 };
+  await page.evaluate(() => {
+    globalThis.heard = [];
+    const set = AudioParam.prototype.setTargetAtTime;
+    AudioParam.prototype.setTargetAtTime = function (value, ...more) {
+      globalThis.heard.push(value);
+      return set.call(this, value, ...more);
+    };
+  });
+  await page.keyboard.press("m");
   // Down onto the organ until it resists.
   await drag(middle, { x: 0, y: 150 }, 60);
   await page.waitForFunction(() => Number.parseFloat(document.querySelector(".force-bar output").textContent) > 0.1);
   await picture(page, "train-press");
+  assert.ok(await page.locator("aside .tick input").isChecked());
+  const heard = await page.evaluate(() => globalThis.heard.filter((value) => value > 1)); // pitches, not loudness
+  assert.ok(Math.min(...heard) === 160 && Math.max(...heard) > 170, `the sound rises with the force: ${Math.min(...heard)} to ${Math.max(...heard)} Hz`);
   assert.deepEqual(await seriousFindings(page), []);
   await drag({ x: middle.x, y: middle.y + 150 }, { x: 0, y: -150 }, 40);
   // The blade, with keys and mouse: down into the organ, and along.
@@ -138,7 +167,15 @@ test("the session verifies to the bit, and is compared at once", async () => {
   const info = JSON.parse(ctpm(folder, "info", "mine.ctpm", "--json").out);
   assert.equal(info.metadata.source, "studio");
   assert.ok(info.severed > 0);
-  console.log(`training: pose to tick p50 ${(1e3 * info.values.device_pose_wait_p50_s).toFixed(1)} ms, p99 ${(1e3 * info.values.device_pose_wait_p99_s).toFixed(1)} ms; between poses at most ${(1e3 * info.values.device_longest_gap_s).toFixed(0)} ms`);
+  // The same motion as a table, recorded by the command, does the same to the tissue; the table has nine digits.
+  assert.equal(ctpm(folder, "replay", "mine.ctpm", "--csv", "mine.csv").code, 0);
+  const again = ctpm(folder, "record", "kidney.json", "--motion", "mine.csv", "-o", "again.ctpm");
+  assert.equal(again.code, 0, again.out + again.err);
+  const same = JSON.parse(ctpm(folder, "info", "again.ctpm", "--json").out);
+  assert.ok(Math.abs(same.severed - info.severed) <= 0.02 * info.severed, `${same.severed} and ${info.severed} elements are severed`);
+  for (const key of ["max_force_n", "max_depth_m"]) assert.ok(Math.abs(same[key] / info[key] - 1) < 0.02, `${key}: ${same[key]} and ${info[key]}`);
+  console.log(`training: as a table of its motion ${same.severed} of ${info.severed} elements, ${same.max_force_n} and ${info.max_force_n} N`);
+  console.log(`training: pose to tick p50 ${(1e3 * info.values.device_pose_wait_p50_s).toFixed(1)} ms, p99 ${(1e3 * info.values.device_pose_wait_p99_s).toFixed(1)} ms (on the way p99 ${(1e3 * info.values.device_pose_way_p99_s).toFixed(1)} ms), ${(1e2 * info.values.device_poses_within_5ms).toFixed(1)} % within 5 ms; between poses at most ${(1e3 * info.values.device_longest_gap_s).toFixed(0)} ms`);
 });
 
 test("a worst moment leads to the timeline", async () => {
@@ -146,6 +183,7 @@ test("a worst moment leads to the timeline", async () => {
   await page.waitForFunction(() => document.querySelectorAll(".uplot").length >= 3);
   await page.waitForTimeout(1500);
   assert.match(await page.locator(".captions").innerText(), /kidney-cut-expert.*mine/s);
+  assert.ok(await page.locator("#panel .jumps button").count(), "the other worst moments are there too");
   await picture(page, "train-to-review");
 });
 

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 
 #include "tests/studio/server/serving.h"
@@ -121,6 +123,39 @@ TEST_F(AuthorTest, WhatTakesLongCanBeStoppedAndLeavesNothing) {
   text_["organs"][0]["fill"] = {{"radius_mm", 2}, {"gap_mm", 2}};
   const auto scatter = stopped(client, "scene.scatter", {{"path", "kidney.json"}, {"text", text_.dump()}});
   ASSERT_TRUE(scatter.contains("errors")) << scatter;
+}
+
+/// The kidney without the triangles of its end, where x is the largest.
+std::string holed_kidney() {
+  std::ifstream in(fs::path(CTPM_SOURCE_DIR) / "scenes/organs/kidney.obj");
+  std::vector<double> x;
+  std::string kept, line;
+  double most = -1e9, least = 1e9;
+  while (std::getline(in, line)) {
+    double at = 0;
+    if (std::sscanf(line.c_str(), "v %lf", &at) == 1)
+      x.push_back(at), most = std::max(most, at), least = std::min(least, at);
+    unsigned corner = 0;
+    const bool is_of_the_end = line.starts_with("f ") && std::sscanf(line.c_str(), "f %u", &corner) == 1 &&
+                               x.at(corner - 1) > most - 0.15 * (most - least);
+    if (!is_of_the_end) kept += line + "\n";
+  }
+  return kept;
+}
+
+TEST_F(AuthorTest, AWideHoleIsRefusedByItsNameInTheFolderAndClosedOnRequest) {
+  std::ofstream(folder_.path() / "holed.obj") << holed_kidney();
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  nlohmann::json import = {{"mesh", "holed.obj"}, {"scene", "closed.json"}, {"radius_m", 0.004}, {"organ", "kidney"}};
+  const auto refused = client.call("scene.import", import);
+  ASSERT_TRUE(refused.contains("errors")) << refused;
+  EXPECT_EQ(refused["errors"][0]["where"], "holed.obj");
+  EXPECT_NE(refused["errors"][0]["hint"].get<std::string>().find("largest_hole_mm"), std::string::npos) << refused;
+  import["largest_hole_m"] = 0.1;
+  const auto closed = client.call("scene.import", import);
+  ASSERT_TRUE(closed.contains("result")) << closed;
+  EXPECT_TRUE(fs::exists(folder_.path() / "closed.json"));
 }
 
 TEST_F(AuthorTest, ATextOutsideOfTheFolderIsRefused) {

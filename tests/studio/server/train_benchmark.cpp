@@ -35,9 +35,10 @@ constexpr std::array kVariants{Variant{"no studio", 0, false}, Variant{"the page
 constexpr std::size_t kBase = 1;
 
 /// What a run measured.
-enum Measure { late_share, tick_p50, tick_p99, wait_p50, wait_p99, kMeasures };
-constexpr std::array kNames{"late ticks, % of all", "tick p50, ms", "tick p99, ms", "pose to tick p50, ms",
-                            "pose to tick p99, ms"};
+enum Measure { late_share, tick_p50, tick_p99, wait_p50, wait_p99, way_p99, within, kMeasures };
+constexpr std::array kNames{"late ticks, % of all", "tick p50, ms",         "tick p99, ms",
+                            "pose to tick p50, ms", "pose to tick p99, ms", "of it until read p99, ms",
+                            "poses within 5 ms, %"};
 using Run = std::array<double, kMeasures>;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
@@ -77,6 +78,8 @@ std::optional<Run> run_alone(const recordings::SessionStart& start, const Vec3& 
     for (const auto& [name, value] : s.values) {
       if (name == "device_pose_wait_p50_s") (*run)[wait_p50] = 1e3 * value;
       if (name == "device_pose_wait_p99_s") (*run)[wait_p99] = 1e3 * value;
+      if (name == "device_pose_way_p99_s") (*run)[way_p99] = 1e3 * value;
+      if (name == "device_poses_within_5ms") (*run)[within] = 1e2 * value;
     }
   });
   lead(top, [&](Vec3 at, double time) { hand.move({{at, Quat{1, 0, 0, 0}}, 1}, time); });
@@ -101,9 +104,13 @@ std::optional<Run> ended(SocketClient& page) try {
     const auto message = page.receive();
     if (!message.is_text || message.bytes.find("train_ended") == std::string::npos) continue;
     const nlohmann::json end = nlohmann::json::parse(message.bytes)["content"];
-    return Run{1e2 * double(end["late_ticks"]) / double(end["ticks"]), 1e3 * double(end["tick_time_p50_s"]),
-               1e3 * double(end["tick_time_p99_s"]), 1e3 * double(end["pose_wait_p50_s"]),
-               1e3 * double(end["pose_wait_p99_s"])};
+    return Run{1e2 * double(end["late_ticks"]) / double(end["ticks"]),
+               1e3 * double(end["tick_time_p50_s"]),
+               1e3 * double(end["tick_time_p99_s"]),
+               1e3 * double(end["pose_wait_p50_s"]),
+               1e3 * double(end["pose_wait_p99_s"]),
+               1e3 * double(end["pose_way_p99_s"]),
+               1e2 * double(end["poses_within_5ms"])};
   }
 } catch (const std::exception&) {
   return std::nullopt;
