@@ -13,8 +13,7 @@ struct TriangleHit {
 
 std::optional<TriangleHit> meet_triangle(Vec3 p, Vec3 q, Vec3 a, Vec3 b, Vec3 c) {
   const double side_p = volume(p, a, b, c), side_q = volume(q, a, b, c);
-  if ((side_p > 0) == (side_q > 0) && side_p != 0 && side_q != 0) return std::nullopt;
-  if (side_p == 0 && side_q == 0) return std::nullopt;
+  if ((side_p > 0) == (side_q > 0)) return std::nullopt;
   const double ab = volume(p, q, a, b), bc = volume(p, q, b, c), ca = volume(p, q, c, a);
   const bool meets = (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
   const double sum = ab + bc + ca;

@@ -15,7 +15,8 @@ struct SweepHit {
   double share;   ///< part of the edge's motion, 0 to 1
 };
 
-/// Touching an edge or corner of a triangle counts as crossing; a segment in the plane of a triangle does not cross it.
+/// Touching an edge or corner of a triangle counts as crossing. An end in the plane of a triangle counts as on that
+/// side of it from which its corners run counter-clockwise, so that what lies in the surface belongs to one side.
 std::optional<SweepHit> meet_sweep(Vec3 p, Vec3 q, Vec3 from, Vec3 to, Vec3 from2, Vec3 to2);
 
 /// The point of the triangle a b c that is nearest to p.

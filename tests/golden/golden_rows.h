@@ -173,12 +173,17 @@ inline constexpr GoldenRow kGoldenRevision9[] = {
     {"soft and touched slice, auto", {0x0aebf3b27fba0d04, 0x48f5ebb3b9b1b20b, 0x83d59a6edd6063b3, 0xae7beaf2056aac23}},
 };
 
+inline constexpr GoldenRow kGoldenRevision10[] = {
+    {"touched plane, auto", {0x05c70d5366a0e86f, 0x21d13da372bbb391, 0x2b07f6a5bb943e4b, 0x0e7540672eaf5347}},
+    {"touched plane, sdirk2", {0x37af568419ef2339, 0x882b573d001dd94a, 0xffda939d257c06b7, 0x8d9bbb10f6f0919f}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09}, {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189}, {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
     {5, kGoldenRevision5, 0xde01e1a50a84c47a}, {6, kGoldenRevision6, 0xa6eef089d8c4a783},
     {7, kGoldenRevision7, 0xe9b636c6028e3176}, {8, kGoldenRevision8, 0x7b7d2031be004e94},
-    {9, kGoldenRevision9, 0xb75cb37d4faeb3c5},
+    {9, kGoldenRevision9, 0xb75cb37d4faeb3c5}, {10, kGoldenRevision10, 0x6d5ddd69b485de71},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

@@ -49,6 +49,13 @@ inline Inputs touched_tear_inputs(int tick) {
   return inputs;
 }
 
+/// A scalpel cuts the block along the middles of spheres for 200 ticks, then a ball presses into the cut.
+inline Inputs touched_plane_inputs(int tick) {
+  Inputs inputs = touched_cut_inputs(tick);
+  if (tick < 200) inputs.position = {-0.05 + 0.0005 * tick, 0, 0.020};
+  return inputs;
+}
+
 /// A ball presses, and from tick 100 on a scalpel in the other hand cuts beside it.
 inline Inputs two_hands_inputs(int tick) {
   Inputs inputs = golden_inputs(std::min(tick, 150));

@@ -7,6 +7,7 @@
 
 #include "core/cutbody/cut_grid.h"
 #include "core/cutbody/cut_mesh.h"
+#include "core/cutting/pieces.h"
 #include "tests/core/cut_blocks.h"
 #include "tests/core/topology.h"
 
@@ -49,6 +50,23 @@ TEST(TornTissue, ABridgeWithoutElementsTears) {
   }
   EXPECT_GT(with_left, 100);
   EXPECT_GT(with_right, 100);
+}
+
+TEST(TornTissue, SpheresThatACutGoesThroughStayOnOneSideOfIt) {
+  const Model model = testing::block_to_cut(7, 8, 4, 0.01);
+  for (const bool is_forth : {true, false}) {
+    State state = rest_state(model);
+    testing::cut_along(
+        model,
+        [=](double t) {
+          const double y = (is_forth ? 1 : -1) * (kLeft + t * (kRight - kLeft));
+          return testing::straight_front({0, y, -0.01}, {0, y, 0.05});
+        },
+        state);
+    cutting::Pieces pieces(model);
+    EXPECT_EQ(pieces.find(state), 2);
+    EXPECT_EQ(testing::DrawnCut(model, state).pieces, 2);
+  }
 }
 
 TEST(TornTissue, ABridgeWithElementsHolds) {
