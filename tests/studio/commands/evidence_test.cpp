@@ -156,6 +156,8 @@ TEST_F(Evidence, TimeThatALateMachineLosesIsSaidByRecordAndInfo) {
   RunningProgram program({"record", "block.json", "--script", "press.json", "-o", "a.ctpm"}, folder_.path());
   for (int i = 0; i < 3000 && !fs::exists(path("a.ctpm-wal")); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  // The file is there before the tissue has settled, which takes a moment; then the press goes on for 1.7 s.
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
   program.stop_for(std::chrono::milliseconds(600));
   const ProgramOutcome recorded = program.outcome();
   EXPECT_EQ(recorded.code, 0) << recorded.err;
