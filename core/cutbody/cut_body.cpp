@@ -77,7 +77,7 @@ bool CutBody::update(const State& state) {
   if (!parts_ && !is_swept(state, organ_)) return false;
   prepare();
   if (!parts_->grid.update(state)) return false;
-  parts_->binding.forget_near(parts_->grid.take_changed());
+  parts_->binding.update(parts_->grid.take_changed());
   rebuild(state);
   return true;
 }

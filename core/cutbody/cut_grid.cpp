@@ -116,7 +116,7 @@ void CutGrid::find_surface() {
         const double middle = 0.5 * (inside + outside);
         (depth_.at(organ, p + middle * (q - p)) > 0 ? inside : outside) = middle;
       }
-      outer_[edge(i, d)] = std::clamp(float(0.5 * (inside + outside)), kOuterFromEnd, 1 - kOuterFromEnd);
+      outer_[edge(i, d)] = {std::clamp(float(0.5 * (inside + outside)), kOuterFromEnd, 1 - kOuterFromEnd), {}};
       parted_[std::size_t(i)] |= std::uint8_t(1 << d);
     }
 }
@@ -380,14 +380,20 @@ std::optional<CutGrid::Crossing> CutGrid::cut_crossing(Index node, int direction
 }
 
 CutGrid::Crossing CutGrid::outer_crossing(Index node, int direction) const {
-  const double along = outer_.at(edge(node, direction));
-  const Vec3 p = rest(node);
-  const Index triangle = nearest_triangle(p + along * (rest(end(node, direction)) - p));
-  if (triangle < 0) return {along, {}};
+  const Outer& outer = outer_.at(edge(node, direction));
+  if (!outer.normal) {
+    const Vec3 p = rest(node);
+    const Index triangle = nearest_triangle(p + double(outer.along) * (rest(end(node, direction)) - p));
+    outer.normal = triangle < 0 ? Vec3{} : normal_of(triangle);
+  }
+  return {outer.along, *outer.normal};
+}
+
+Vec3 CutGrid::normal_of(Index triangle) const {
   const Surface& surface = model_.surfaces[std::size_t(organ_)];
   const auto& t = surface.triangle[std::size_t(triangle)];
   const Vec3 a = surface.vertex[std::size_t(t[0])];
-  return {along, cross(surface.vertex[std::size_t(t[1])] - a, surface.vertex[std::size_t(t[2])] - a)};
+  return cross(surface.vertex[std::size_t(t[1])] - a, surface.vertex[std::size_t(t[2])] - a);
 }
 
 bool CutGrid::update(const State& state) {

@@ -66,6 +66,7 @@ class CutGrid {
   /// The triangle of the organ's own surface that is nearest to a place at rest near it; -1: none is near.
   Index nearest_triangle(Vec3 rest) const { return depth_.nearest_triangle(std::size_t(organ_), rest); }
   /// Where the organ's own surface crosses an edge that leaves the tissue.
+  /// For one thread at a time: it remembers what it found.
   Crossing outer_crossing(Index node, int direction) const;
   /// The crossing of an edge with the swept surface that is nearest to its lower node or to its upper one, for it may
   /// cross more than once; none if it does not.
@@ -135,6 +136,7 @@ class CutGrid {
   }
 
  private:
+  Vec3 normal_of(Index triangle) const;
   std::size_t edge(Index node, int direction) const { return std::size_t(node) * kDirections + std::size_t(direction); }
   void find_frame(const Model& model, const OrganRange& organ);
   void find_surface();
@@ -166,8 +168,12 @@ class CutGrid {
   Node extent_{}, blocks_{};
   LatticeCell first_cell_{};  ///< lowest cell of the lattice that the grid covers, a spacing inside it
   std::vector<std::uint8_t> in_tissue_;
-  std::vector<std::uint8_t> parted_;              ///< of each node: a bit for each direction
-  std::unordered_map<std::size_t, float> outer_;  ///< crossings of edges with the organ's surface
+  std::vector<std::uint8_t> parted_;  ///< of each node: a bit for each direction
+  struct Outer {
+    float along;
+    mutable std::optional<Vec3> normal;  ///< once it was asked for
+  };
+  std::unordered_map<std::size_t, Outer> outer_;  ///< crossings of edges with the organ's surface
   std::unordered_map<std::size_t, Cut> cuts_;
   /// Edges that the swept surface crosses outside the tissue, where it goes on among the spheres there.
   std::unordered_set<std::size_t> outside_;

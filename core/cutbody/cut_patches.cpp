@@ -171,7 +171,7 @@ void CutPatches::follow(std::shared_ptr<const State> state) {
   parts_->seen = std::move(state);
   (void)parts_->grid.update(*parts_->seen);
   const CutGrid::Node extent = parts_->grid.extent();
-  parts_->binding.forget_near({{0, 0, 0}, extent});
+  parts_->binding.update({{0, 0, 0}, extent});
   cover();
 }
 

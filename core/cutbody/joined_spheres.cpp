@@ -12,27 +12,17 @@ namespace {
 constexpr double kBlur = 2;
 static_assert(JoinedSpheres::kBlurHops >= kBlur);
 
-/// The part of a sphere by how many edges the way to it is longer than the shortest (our choice): one more may be due
-/// to a wall beside the way, which grazes edges of the grid; a spacing more is around the end of a cut.
-constexpr std::array<double, Sight::kMostDetour + 1> kPart{1, 1, 0.75, 0.5, 0.25};
+/// The part of a sphere by the detour to it (our choice): a spacing more is around the end of a cut.
+constexpr std::array<double, Sight::kMostDetour + 1> kPart{1, 0.75, 0.5, 0.25};
 
 }  // namespace
 
-void JoinedSpheres::forget_near(CutGrid::NodeBox changed) {
-  ++round_;
-  for (auto& [node, known] : seen_)
-    if (grid_.is_near(changed, node, Sight::kMostHops)) known.is_old = true;
-  sight_.update(changed);
-}
-
-const JoinedSpheres::Known& JoinedSpheres::known_of(Index node) {
+const Sight::Seen& JoinedSpheres::seen_from(Index node) {
   const auto [found, is_new] = seen_.try_emplace(node);
   Known& known = found->second;
-  if (!is_new && !known.is_old) return known;
-  Sight::Seen seen = sight_.from(node);
-  if (is_new || seen != known.seen) known.seen = std::move(seen), known.since = round_;
-  known.is_old = false;
-  return known;
+  if (is_new || sight_.changed_in(node) > known.round) known.seen = sight_.from(node);
+  known.round = round();
+  return known.seen;
 }
 
 std::vector<JoinedSpheres::Index> JoinedSpheres::nodes() const {
@@ -41,8 +31,8 @@ std::vector<JoinedSpheres::Index> JoinedSpheres::nodes() const {
   return nodes;
 }
 
-bool JoinedSpheres::is_as_in(std::uint32_t round, std::span<const Index> nodes) {
-  return std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return known_of(node).since <= round; });
+bool JoinedSpheres::is_as_in(std::uint32_t round, std::span<const Index> nodes) const {
+  return std::all_of(nodes.begin(), nodes.end(), [&](Index node) { return sight_.changed_in(node) <= round; });
 }
 
 /// The nodes on the side of `side` around a place, and how much each counts.

@@ -30,8 +30,8 @@ class JoinedSpheres {
   /// `grid` must outlive the JoinedSpheres.
   explicit JoinedSpheres(const CutGrid& grid) : grid_(grid), sight_(grid) {}
 
-  /// Looks again at what may depend on edges in the box, when it is asked for.
-  void forget_near(CutGrid::NodeBox changed);
+  /// Follows the grid, of which edges or spheres in a box have changed.
+  void update(CutGrid::NodeBox changed) { sight_.update(changed); }
   /// Forgets all: it is found again when it is asked for.
   void forget() { seen_ = {}; }
 
@@ -42,31 +42,28 @@ class JoinedSpheres {
   /// ascending. Valid until the next call.
   std::span<const Joined> around(Vec3 rest, Index side);
 
-  /// Number of calls of forget_near().
-  std::uint32_t round() const { return round_; }
-  /// The nodes on which the result of the last call of around() depends, beside the edges between them.
+  /// Number of calls of update().
+  std::uint32_t round() const { return sight_.round(); }
+  /// The nodes on which, and on the edges of which, the result of the last call of around() depends.
   std::vector<Index> nodes() const;
-  /// Whether nodes see what they saw in a round.
-  bool is_as_in(std::uint32_t round, std::span<const Index> nodes);
+  /// Whether nodes have the edges, and see what they saw, in a round.
+  bool is_as_in(std::uint32_t round, std::span<const Index> nodes) const;
 
  private:
   struct Known {
     Sight::Seen seen;
-    std::uint32_t since = 0;  ///< the round in which it last changed
-    bool is_old = false;      ///< it may have changed
+    std::uint32_t round = 0;  ///< in which it was seen
   };
   struct Weighted {
     Index node;
     double weight;
   };
   void find_nodes(Vec3 rest, Index side);
-  const Known& known_of(Index node);
-  const Sight::Seen& seen_from(Index node) { return known_of(node).seen; }
+  const Sight::Seen& seen_from(Index node);
 
   const CutGrid& grid_;
   Sight sight_;
   std::unordered_map<Index, Known> seen_;
-  std::uint32_t round_ = 0;
   std::vector<Weighted> nodes_;
   std::vector<double> sum_;   ///< of each sphere; 0 between calls
   std::vector<Index> known_;  ///< spheres of which the sum is not 0

@@ -139,18 +139,15 @@ std::size_t SideBinding::KeyHash::operator()(const Key& key) const {
   return hash + 2 * std::size_t(key.is_outer) + std::size_t(key.is_wall);
 }
 
-void SideBinding::forget_near(CutGrid::NodeBox changed) {
-  // Edges and rows of the cut beside a place change it; those farther away may change what its nodes see.
-  constexpr Index kBeside = JoinedSpheres::kBlurHops + 2;
-  static_assert(kBeside >= kSideSteps + kOntoCut);
-  for (auto& [key, entry] : bound_)
-    entry.is_old = entry.is_old || grid_.is_near(changed, key.side, JoinedSpheres::kMostHops);
-  // A cut far away may divide the piece that a vertex follows.
-  std::erase_if(bound_, [&](const auto& known) {
-    return known.second.by_piece || grid_.is_near(changed, known.first.side, kBeside);
-  });
+void SideBinding::update(CutGrid::NodeBox changed) {
+  // Vertices go where a cut goes on: those that were not asked for lately are forgotten.
+  constexpr std::size_t kFew = 1024;
+  if (bound_.size() > 2 * asked_ + kFew)
+    std::erase_if(bound_, [&](const auto& known) { return known.second.round < joined_.round(); });
+  asked_ = 0;
+  changed_.push_back(changed);
   piece_.clear(), row_boxes_.clear();
-  joined_.forget_near(changed);
+  joined_.update(changed);
 }
 
 /// Follows the spheres of a list within reach; empty if they do not span space.
@@ -209,15 +206,25 @@ Vec3 SideBinding::place_of(const Origin& origin) const {
 
 /// Moves with the organ's own surface.
 SideBinding::Binding SideBinding::follow_whole(const Origin& origin) const {
-  std::map<Index, double> sum;
+  struct Part {
+    Index sphere;
+    double weight;
+  };
+  std::vector<Part> parts;
   const SurfaceBinding& whole = whole_.binding;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto v = std::size_t(whole_.triangle[std::size_t(origin.triangle)][i]);
     for (auto e = std::size_t(whole.first[v]); e < std::size_t(whole.first[v + 1]); ++e)
-      sum[whole.sphere[e]] += origin.weight[i] * whole.weight[e];
+      parts.push_back({whole.sphere[e], origin.weight[i] * whole.weight[e]});
   }
+  // Those of one sphere are added up in the order of the corners.
+  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.sphere < b.sphere; });
   Binding binding;
-  for (const auto& [sphere, weight] : sum) binding.sphere.push_back(sphere), binding.weight.push_back(weight);
+  for (const Part& part : parts) {
+    if (binding.sphere.empty() || binding.sphere.back() != part.sphere)
+      binding.sphere.push_back(part.sphere), binding.weight.push_back(0);
+    binding.weight.back() += part.weight;
+  }
   return binding;
 }
 
@@ -235,21 +242,36 @@ const SideBinding::Bound& SideBinding::bind(const CutMesh::Vertex& vertex, bool 
   const auto [found, is_new] =
       bound_.try_emplace({vertex.side, vertex.rest.x, vertex.rest.y, vertex.rest.z, is_outer, is_wall});
   Entry& entry = found->second;
-  const bool is_known = !is_new && (!entry.is_old || joined_.is_as_in(entry.round, entry.nodes));
-  entry.is_old = false, entry.round = joined_.round();
-  if (is_known) return entry.bound;
-  entry.bound = {}, entry.nodes.clear();
-  bind(vertex, is_outer, is_wall, state, entry);
+  if (!is_new && entry.round == joined_.round()) return entry.bound;
+  ++asked_;
+  const bool was_known = !is_new && is_known(vertex, is_wall, state, entry);
+  entry.round = joined_.round();
+  if (was_known) return entry.bound;
+  entry.put = is_wall ? near_cut(vertex.rest, state) : vertex.rest;
+  bind(vertex.side, is_outer, entry);
   return entry.bound;
 }
 
-void SideBinding::bind(const CutMesh::Vertex& vertex, bool is_outer, bool is_wall, const State& state, Entry& entry) {
+/// Whether what an entry depends on is as it was.
+bool SideBinding::is_known(const CutMesh::Vertex& vertex, bool is_wall, const State& state, const Entry& entry) {
+  // A cut far away may divide the piece that a vertex follows.
+  if (entry.by_piece || !joined_.is_as_in(entry.round, entry.nodes)) return false;
+  if (!is_wall) return true;
+  // Rows of the cut beside a place change where it is put.
+  constexpr Index kBeside = 4;
+  static_assert(kBeside >= kSideSteps + kOntoCut);
+  const bool is_near = std::any_of(changed_.begin() + entry.round, changed_.end(),
+                                   [&](const auto& box) { return grid_.is_near(box, vertex.side, kBeside); });
+  return !is_near || near_cut(vertex.rest, state) == entry.put;
+}
+
+void SideBinding::bind(Index side, bool is_outer, Entry& entry) {
   Bound& bound = entry.bound;
-  bound.rest = is_wall ? near_cut(vertex.rest, state) : vertex.rest;
+  bound = {entry.put, {}, {}}, entry.nodes.clear();
   if (is_outer) bound.origin = origin_of(bound.rest);
-  const bool is_near_cut = vertex.side >= 0 && joined_.is_near_cut(vertex.side);
+  const bool is_near_cut = side >= 0 && joined_.is_near_cut(side);
   std::span<const Joined> joined;
-  if (vertex.side >= 0) joined = joined_.around(bound.rest, vertex.side), entry.nodes = joined_.nodes();
+  if (side >= 0) joined = joined_.around(bound.rest, side), entry.nodes = joined_.nodes();
   if (bound.origin.triangle >= 0) {
     const Vec3 place = place_of(bound.origin);
     if (norm(place - bound.rest) <= kOnSurface * organ_.spacing) {
@@ -267,7 +289,7 @@ void SideBinding::bind(const CutMesh::Vertex& vertex, bool is_outer, bool is_wal
   entry.by_piece = !mix.is_whole();
   if (entry.by_piece) {
     if (piece_.empty()) find_pieces();
-    for (const Index piece : {piece_[std::size_t(vertex.side)], Index(-1)})
+    for (const Index piece : {piece_[std::size_t(side)], Index(-1)})
       if (!mix.is_whole()) follow_piece(bound.rest, piece, mix);
   }
   bound.binding = mix.binding();

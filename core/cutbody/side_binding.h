@@ -48,8 +48,8 @@ class SideBinding {
   /// Both must outlive the SideBinding.
   SideBinding(const Model& model, const CutGrid& grid);
 
-  /// Forgets what depends on edges in the box.
-  void forget_near(CutGrid::NodeBox changed);
+  /// Follows the grid, of which edges or spheres in a box have changed.
+  void update(CutGrid::NodeBox changed);
   /// Forgets all: it is found again when it is asked for.
   void forget() { bound_ = {}, joined_.forget(); }
 
@@ -70,19 +70,20 @@ class SideBinding {
 
   struct Entry {
     Bound bound;
+    Vec3 put;                  ///< the vertex, or where it is on the swept surface if it is of a wall [m]
     std::vector<Index> nodes;  ///< on what these see it depends
     std::uint32_t round = 0;   ///< of joined_, in which it was so
-    bool is_old = false;       ///< it may depend on what changed since
     bool by_piece = false;     ///< the spheres of its own side hardly span space, or do not
   };
   class Mix;
   using Joined = JoinedSpheres::Joined;
 
   void find_pieces();
+  bool is_known(const CutMesh::Vertex& vertex, bool is_wall, const State& state, const Entry& entry);
   Vec3 near_cut(Vec3 rest, const State& state);
   Origin origin_of(Vec3 rest) const;
   Vec3 place_of(const Origin& origin) const;
-  void bind(const CutMesh::Vertex& vertex, bool is_outer, bool is_wall, const State& state, Entry& entry);
+  void bind(Index side, bool is_outer, Entry& entry);
   Binding follow_whole(const Origin& origin) const;
   Binding follow(Vec3 rest, std::span<const Joined> spheres, double reach) const;
   Binding follow_rigidly(Vec3 rest, Index piece) const;
@@ -96,8 +97,10 @@ class SideBinding {
   const CutGrid& grid_;
   JoinedSpheres joined_;
   std::unordered_map<Key, Entry, KeyHash> bound_;
-  cutting::SweptBoxes row_boxes_;  ///< see cutting::boxes_of_rows()
-  std::vector<Index> piece_;       ///< that each node of the grid follows; empty until it is asked for after a change
+  std::size_t asked_ = 0;                  ///< entries asked for in this round of joined_
+  std::vector<CutGrid::NodeBox> changed_;  ///< in each round
+  cutting::SweptBoxes row_boxes_;          ///< see cutting::boxes_of_rows()
+  std::vector<Index> piece_;  ///< that each node of the grid follows; empty until it is asked for after a change
 };
 
 }  // namespace ctpm::cutbody

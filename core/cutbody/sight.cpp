@@ -49,7 +49,9 @@ Sight::Sight(const CutGrid& grid)
   const auto size = std::size_t(rows_) * std::size_t(layers_) * std::size_t(windows_);
   for (Bits& open : is_open_) open.assign(size, 0);
   at_cut_.assign(size, 0), beside_cut_.assign(size, 0), has_sphere_.assign(size, 0);
-  update({{0, 0, 0}, grid.extent()});
+  changed_in_.assign(std::size_t(grid.count()), 0);
+  find_edges({{0, 0, 0}, grid.extent()});
+  find_beside_cut({{0, 0, 0}, grid.extent()});
 }
 
 /// In each window that the node is in.
@@ -63,6 +65,20 @@ void Sight::set(Bits& bits, CutGrid::Node n, bool value) {
 }
 
 void Sight::update(CutGrid::NodeBox changed) {
+  ++round_;
+  find_edges(changed);
+  find_beside_cut(changed);
+  if (changed.low == CutGrid::Node{} && changed.high == grid_.extent()) {
+    // Anything may have changed: it is found again when it is asked for.
+    view_.clear(), changed_in_.assign(changed_in_.size(), round_);
+    return;
+  }
+  for (std::size_t s = 0; s < view_.size(); ++s)
+    if (view_[s] && grid_.is_near(changed, view_[s]->node, kMostHops + 1)) look_again(Index(s));
+}
+
+/// Finds the edges in a box again that may be gone along, and what is at their ends.
+void Sight::find_edges(CutGrid::NodeBox changed) {
   // An edge belongs to its lower node, and is also the upper node's.
   CutGrid::Node low, high;
   for (std::size_t a = 0; a < 3; ++a)
@@ -80,14 +96,13 @@ void Sight::update(CutGrid::NodeBox changed) {
     bool at_cut = false;
     for (int d = 1; d < CutGrid::kDirections; ++d) {
       const bool is_edge = grid_.contains(end_of(n, d)) && grid_.in_tissue(node) && grid_.in_tissue(grid_.end(node, d));
-      set(is_open_[std::size_t(d)], n, is_edge && !grid_.is_parted(node, d));
+      const bool is_open = is_edge && !grid_.is_parted(node, d);
+      if (is_open != is_set(is_open_[std::size_t(d)], n))
+        set(is_open_[std::size_t(d)], n, is_open), mark(node), mark(grid_.end(node, d));
       at_cut = at_cut || is_cut(n, d) || is_cut({n[0] - (d & 1), n[1] - (d >> 1 & 1), n[2] - (d >> 2)}, d);
     }
     set(at_cut_, n, at_cut), set(has_sphere_, n, !grid_.spheres_at(node).empty());
   });
-  find_beside_cut(changed);
-  for (std::unique_ptr<View>& view : view_)
-    if (view && grid_.is_near(changed, view->node, kMostHops + 1)) view.reset();
 }
 
 /// Adds what is reached over an edge from the nodes of `last` to a run of rows, the first of which is at `first` in the
@@ -133,18 +148,55 @@ void Sight::find_beside_cut(CutGrid::NodeBox changed) {
       for (Index k = first[2]; k <= last[2]; ++k)
         arrive(at(w, first[1], k), &before[row(k)], layer, {&reached[row(k)], std::size_t(rows)});
     }
+    constexpr Row kNodes = ((Row(1) << kStride) - 1) << kMostHops;
     for (Index k = low[2]; k <= high[2]; ++k)
-      std::copy_n(reached.begin() + std::ptrdiff_t(row(k)) + low[1] - first[1], high[1] - low[1] + 1,
-                  beside_cut_.begin() + std::ptrdiff_t(at(w, low[1], k)));
+      for (Index j = low[1]; j <= high[1]; ++j) {
+        const Row now = reached[row(k) + std::size_t(j - first[1])];
+        const Row before_now = std::exchange(beside_cut_[at(w, j, k)], now);
+        for (Row other = (now ^ before_now) & kNodes; other != 0; other &= other - 1)
+          if (const CutGrid::Node n{kStride * w + std::countr_zero(other) - kMostHops, j, k}; grid_.contains(n))
+            mark(grid_.at(n));
+      }
   }
 }
 
 const Sight::View& Sight::view_of(Index sphere, Index node) {
   if (std::size_t(sphere) >= view_.size()) view_.resize(std::size_t(sphere) + 1);
   std::unique_ptr<View>& known = view_[std::size_t(sphere)];
-  if (known && known->node == node) return *known;
-  known = std::make_unique<View>();
-  View& view = *known;
+  if (!known) known = look_from(node);
+  return *known;
+}
+
+/// Follows the grid with the view of a sphere, and marks the nodes that see it otherwise than before.
+void Sight::look_again(Index sphere) {
+  std::unique_ptr<View>& known = view_[std::size_t(sphere)];
+  const Index node = grid_.node_of_sphere(sphere);
+  std::unique_ptr<View> view = node < 0 ? nullptr : look_from(node);
+  if (view && view->node == known->node) {
+    mark_changes(known.get(), view.get());
+  } else {
+    mark_changes(known.get(), nullptr);
+    if (view) mark_changes(nullptr, view.get());
+  }
+  known = std::move(view);
+}
+
+/// Marks the nodes in which two views from one node differ; null: one that sees nothing.
+void Sight::mark_changes(const View* before, const View* after) {
+  const CutGrid::Node home = grid_.node((before != nullptr ? before : after)->node);
+  for (std::size_t r = 0; r < View{}.detour.size(); ++r) {
+    Row other = 0;
+    for (std::size_t b = 0; b < std::size_t(View::kBits); ++b)
+      other |= (before != nullptr ? before->detour[r][b] : 0) ^ (after != nullptr ? after->detour[r][b] : 0);
+    for (; other != 0; other &= other - 1)
+      mark(grid_.at({home[0] + std::countr_zero(other) - kMostHops, home[1] + Index(r) % kSide - kMostHops,
+                     home[2] + Index(r) / kSide - kMostHops}));
+  }
+}
+
+std::unique_ptr<Sight::View> Sight::look_from(Index node) const {
+  auto made = std::make_unique<View>();
+  View& view = *made;
   view.node = node;
   const CutGrid::Node home = grid_.node(node);
   std::array<Rows, kMostHops + 1> reached{};
@@ -157,14 +209,15 @@ const Sight::View& Sight::view_of(Index sphere, Index node) {
     const Index j = Index(r) % kSide - kMostHops, k = Index(r) / kSide - kMostHops;
     view.detour[r] = {};
     for (Index way = shortest_way({0, j, k}); way <= kMostHops; ++way)
-      for (Index detour = 0; detour <= std::min(kMostDetour, kMostHops - way); ++detour) {
+      for (Index longer = 0; longer <= std::min(kGrazed + kMostDetour, kMostHops - way); ++longer) {
         const Row seen =
-            reached[std::size_t(way + detour)][around(j, k)] >> (bit(home) - kMostHops) & shortest[r][std::size_t(way)];
+            reached[std::size_t(way + longer)][around(j, k)] >> (bit(home) - kMostHops) & shortest[r][std::size_t(way)];
+        const Index detour = std::max(0, longer - kGrazed);
         for (int b = 0; b < View::kBits; ++b)
           if ((1 + detour) >> b & 1) view.detour[r][std::size_t(b)] |= seen;
       }
   }
-  return view;
+  return made;
 }
 
 Sight::Seen Sight::from(Index node) {

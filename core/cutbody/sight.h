@@ -18,12 +18,13 @@ class Sight {
   using Index = CutGrid::Index;
 
   /// Spheres are seen over this many edges at most, and over so many more than the shortest way: what can only be
-  /// reached around the end of a cut is on its other side.
-  static constexpr Index kMostHops = 12, kMostDetour = 4;
+  /// reached around the end of a cut is on its other side. So many more may be due to a wall beside the way, which
+  /// grazes edges of the grid, and are no detour (our choice).
+  static constexpr Index kMostHops = 12, kGrazed = 1, kMostDetour = 3;
 
   struct Seen {
     struct Sphere {
-      Index sphere, detour;  ///< edges of the way to it beyond the shortest
+      Index sphere, detour;  ///< edges of the way to it beyond the shortest and kGrazed
       friend bool operator==(const Sphere&, const Sphere&) = default;
     };
     std::vector<Sphere> sphere;  ///< ascending
@@ -39,6 +40,11 @@ class Sight {
 
   /// What a node sees.
   Seen from(Index node);
+
+  /// Number of calls of update().
+  std::uint32_t round() const { return round_; }
+  /// The round in which what a node sees, or one of its edges, changed last, if from() was asked for it before.
+  std::uint32_t changed_in(Index node) const { return changed_in_[std::size_t(node)]; }
 
  private:
   /// Nodes in a row along the first axis, a bit for each.
@@ -63,7 +69,10 @@ class Sight {
   std::size_t at(Index window, Index j, Index k) const {
     return std::size_t(j + kBeside + rows_ * (k + kBeside + layers_ * window));
   }
+  bool is_set(const Bits& bits, CutGrid::Node n) const { return (bits[at(window(n), n[1], n[2])] >> bit(n) & 1) != 0; }
   void set(Bits& bits, CutGrid::Node n, bool value);
+  void mark(Index node) { changed_in_[std::size_t(node)] = round_; }
+  void find_edges(CutGrid::NodeBox changed);
   void arrive(std::size_t first, const Row* last, Index layer, std::span<Row> found) const;
   void go_on(CutGrid::Node home, Index hops, const Rows& last, Rows& visited, Rows& next) const;
   void find_beside_cut(CutGrid::NodeBox changed);
@@ -77,6 +86,9 @@ class Sight {
     std::array<std::array<Row, std::size_t(kBits)>, std::size_t(kSide* kSide)> detour;
   };
   const View& view_of(Index sphere, Index node);
+  std::unique_ptr<View> look_from(Index node) const;
+  void look_again(Index sphere);
+  void mark_changes(const View* before, const View* after);
 
   const CutGrid& grid_;
   Index rows_, layers_, windows_;
@@ -86,6 +98,8 @@ class Sight {
   Bits beside_cut_;  ///< Seen::has_cut of the eight nodes for which a window is
   Bits has_sphere_;
   std::vector<std::unique_ptr<View>> view_;  ///< of spheres; null: it is not known
+  std::uint32_t round_ = 0;
+  std::vector<std::uint32_t> changed_in_;  ///< of nodes: see changed_in()
 };
 
 }  // namespace ctpm::cutbody

@@ -60,7 +60,7 @@ Sight::Seen seen_from(const CutGrid& grid, Index node) {
     Index up = 0, down = 0;
     for (std::size_t a = 0; a < 3; ++a)
       up = std::max(up, grid.node(i)[a] - home[a]), down = std::max(down, home[a] - grid.node(i)[a]);
-    const Index detour = way[std::size_t(i)] - up - down;
+    const Index detour = std::max(0, way[std::size_t(i)] - up - down - Sight::kGrazed);
     if (detour > Sight::kMostDetour) continue;
     for (const Index sphere : grid.spheres_at(i)) seen.sphere.push_back({sphere, detour});
   }
@@ -68,12 +68,18 @@ Sight::Seen seen_from(const CutGrid& grid, Index node) {
   return seen;
 }
 
-/// Of some nodes all over the tissue, the number that see anything else than they should.
-int count_wrong(Sight& sight, const CutGrid& grid) {
-  int wrong = 0;
+/// Some nodes all over the tissue.
+std::vector<Index> some_nodes(const CutGrid& grid) {
+  std::vector<Index> nodes;
   for (Index i = 0; i < grid.count(); i += 3)
-    if (grid.in_tissue(i)) wrong += !(sight.from(i) == seen_from(grid, i));
-  return wrong;
+    if (grid.in_tissue(i)) nodes.push_back(i);
+  return nodes;
+}
+
+/// Of some nodes, the number that see anything else than they should.
+std::ptrdiff_t count_wrong(Sight& sight, const CutGrid& grid) {
+  const std::vector<Index> nodes = some_nodes(grid);
+  return std::count_if(nodes.begin(), nodes.end(), [&](Index i) { return !(sight.from(i) == seen_from(grid, i)); });
 }
 
 TEST(Sight, NodesSeeWhatIsJoinedToThemWhileACutGrows) {
@@ -96,6 +102,35 @@ TEST(Sight, NodesSeeWhatIsJoinedToThemWhileACutGrows) {
   }
   EXPECT_GT(changes, 6);
   EXPECT_TRUE(grid.anything_cut());
+}
+
+TEST(Sight, TellsWhichNodesSeeOtherwise) {
+  const Model model = testing::make_skinned_block(7, 5, 5, network::Structure::ctpm, 0.003);
+  CutGrid grid(model, 0);
+  Sight sight(grid);
+  State state = rest_state(model);
+  cutting::NewlySwept newly;
+  newly.fill(1), newly.back() = 0;
+  const auto front = [](double y) { return testing::straight_front({0.0013, y, 0.011}, {0.004, y, 0.06}); };
+  const std::vector<Index> nodes = some_nodes(grid);
+  std::vector<Sight::Seen> seen;
+  for (const Index i : nodes) seen.push_back(sight.from(i));
+  (void)grid.take_changed();
+  std::size_t other = 0, told = 0, rounds = 0;
+  for (int i = 0; i < 12; ++i) {
+    cutting::add_swept(state, front(-0.05 + 0.004 * i), front(-0.05 + 0.004 * (i + 1)), newly);
+    if (!grid.update(state)) continue;
+    sight.update(grid.take_changed()), ++rounds;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      Sight::Seen now = sight.from(nodes[n]);
+      const bool is_told = sight.changed_in(nodes[n]) == sight.round(), is_other = !(now == seen[n]);
+      EXPECT_TRUE(is_told || !is_other) << "node " << nodes[n] << " in round " << rounds;
+      other += is_other, told += is_told, seen[n] = std::move(now);
+    }
+  }
+  EXPECT_GT(other, 0u);
+  EXPECT_LT(told, 2 * other) << "hardly more than those that do";
+  EXPECT_LT(told, rounds * nodes.size() / 2);
 }
 
 }  // namespace
