@@ -48,6 +48,18 @@ double share_inside(Vec3 p, Vec3 q, double at_p, double at_q, Depth&& depth) {
   return std::abs(0.5 * (inside + outside) - (at_p > 0 ? 0 : 1));
 }
 
+/// Tissue between two nodes that are outside is looked for at places at most so far apart [m].
+constexpr double kBetween = 1e-3;
+
+/// Part of a segment that is inside, as places between its ends tell.
+template <class Depth>
+double share_between(Vec3 p, Vec3 q, Depth&& depth) {
+  const double parts = std::ceil(norm(q - p) / kBetween);
+  int inside = 0;
+  for (double i = 1; i < parts; ++i) inside += depth(p + i / parts * (q - p)) > 0;
+  return inside > 0 ? inside / parts : 0.0;
+}
+
 /// Mass of a sphere inside an organ that fills its surface [kg]; 0 if it has none.
 double whole_mass(const Model& model, std::size_t organ) {
   if (organ >= model.surfaces.size() || model.surfaces[organ].triangle.empty()) return 0;
@@ -164,7 +176,8 @@ void CutFront::begin_substep(const State& state) {
   for (std::size_t n = 0; n < kEdgeNodes; ++n) {
     Node& node = nodes_[n];
     front_[n] = state.blade_trail[n];
-    node.organ = state.edge_organ[n], node.edge = {}, node.length = node.toughness = node.flank_stress = 0;
+    node.organ = state.edge_organ[n], node.edge = {}, node.has_tissue = false,
+    node.length = node.toughness = node.flank_stress = 0;
     if (node.organ < 0) continue;
     const auto organ = std::size_t(node.organ);
     map_.find(organ, front_[n], reach_[organ], node.place);
@@ -186,10 +199,14 @@ void CutFront::begin_substep(const State& state) {
     const double apart = norm(edge);
     p.edge += edge, q.edge += edge;
     const bool in_p = p.depth > 0, in_q = q.depth > 0;
-    if (in_p && in_q) p.length += 0.5 * apart, q.length += 0.5 * apart;
-    if (in_p == in_q) continue;
+    const auto depth = [&](Vec3 rest) { return depth_.at(std::size_t(p.organ), rest); };
+    if (in_p == in_q) {
+      const double share = in_p ? 1 : share_between(front_[n], front_[n + 1], depth);
+      p.length += 0.5 * share * apart, q.length += 0.5 * share * apart;
+      p.has_tissue = p.has_tissue || share > 0, q.has_tissue = q.has_tissue || share > 0;
+      continue;
+    }
     Node& inside = in_p ? p : q;
-    const auto depth = [&](Vec3 rest) { return depth_.at(std::size_t(inside.organ), rest); };
     inside.length += apart * share_inside(front_[n], front_[n + 1], p.depth, q.depth, depth);
   }
 }
@@ -271,7 +288,7 @@ CutFront::Step CutFront::draw(const Tool& scalpel, const BladeEdge& edge, const 
       const double length = norm(move), most = reach_[organ];
       if (length > most) move = most / length * move;
       step.to[n] = front_[n] + move;
-      const bool is_outside = node.depth <= 0 && depth_.at(organ, step.to[n]) <= 0;
+      const bool is_outside = !node.has_tissue && node.depth <= 0 && depth_.at(organ, step.to[n]) <= 0;
       const Vec3 by_blade = at_node(edge, n) - at_node(last_edge_, n);
       step.cuts[n] = cuts && (!is_outside || 2 * dot(apart, by_blade) > distance * distance);
     }
@@ -294,8 +311,12 @@ NewlySwept CutFront::newly_swept(const Step& step, const State& state) const {
     if (nodes_[n].organ < 0 || nodes_[n].organ != nodes_[n + 1].organ) continue;
     const double is_whole = n < kPointNodes ? is_new[n] : std::max(is_new[n], is_new[n + 1]);
     if (is_whole < (was_swept(state, n, front_[n]) ? kGoesOn : kBegins)) continue;
-    const bool has_volume = has_volume_[std::size_t(nodes_[n].organ)] != 0;
-    if (!has_volume || is_in(n) || is_in(n + 1)) newly[n] = std::uint8_t(1 + nodes_[n].organ);
+    const auto organ = std::size_t(nodes_[n].organ);
+    const auto is_between = [&](const Front& front) {
+      return share_between(front[n], front[n + 1], [&](Vec3 rest) { return depth_.at(organ, rest); }) > 0;
+    };
+    if (has_volume_[organ] == 0 || is_in(n) || is_in(n + 1) || is_between(front_) || is_between(step.to))
+      newly[n] = std::uint8_t(1 + nodes_[n].organ);
   }
   return newly;
 }

@@ -27,6 +27,7 @@ class CutFront {
     Place place;              ///< of the front
     double depth = 0;         ///< of the front below the surface [m]
     Vec3 edge;                ///< direction of the front along the edge, at rest, of any length
+    bool has_tissue = false;  ///< of its organ, between it and a node beside it that is on the same side of the surface
     double length = 0;        ///< of the front at rest that the node stands for and that is in tissue [m]
     double toughness = 0;     ///< of the tissue there [J/m^2]
     double flank_stress = 0;  ///< [Pa]

@@ -178,12 +178,19 @@ inline constexpr GoldenRow kGoldenRevision10[] = {
     {"touched plane, sdirk2", {0x37af568419ef2339, 0x882b573d001dd94a, 0xffda939d257c06b7, 0x8d9bbb10f6f0919f}},
 };
 
+inline constexpr GoldenRow kGoldenRevision11[] = {
+    {"angle-mass-spring, auto", {0x53ed69ed47081f4a, 0x3ba5906091f6ab00, 0x03e8daa7c9bc6762, 0x5343195521929230}},
+    {"touched edge, auto", {0x9b1c43367d2e1eef, 0x2ea98739cd4dc7ce, 0x54dfe5d556480858, 0x4a9efc1b5d76970e}},
+    {"touched edge, sdirk2", {0xccc1a61582d3eac9, 0x7967bc15e25051f8, 0x41e7c1b99d7c3771, 0x34421e88bae98d8b}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
-    {1, kGoldenRevision1, 0x002bb904fcccbc09}, {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
-    {3, kGoldenRevision3, 0xe38c0b55dc5ae189}, {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
-    {5, kGoldenRevision5, 0xde01e1a50a84c47a}, {6, kGoldenRevision6, 0xa6eef089d8c4a783},
-    {7, kGoldenRevision7, 0xe9b636c6028e3176}, {8, kGoldenRevision8, 0x7b7d2031be004e94},
-    {9, kGoldenRevision9, 0xb75cb37d4faeb3c5}, {10, kGoldenRevision10, 0x6d5ddd69b485de71},
+    {1, kGoldenRevision1, 0x002bb904fcccbc09},   {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
+    {3, kGoldenRevision3, 0xe38c0b55dc5ae189},   {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
+    {5, kGoldenRevision5, 0xde01e1a50a84c47a},   {6, kGoldenRevision6, 0xa6eef089d8c4a783},
+    {7, kGoldenRevision7, 0xe9b636c6028e3176},   {8, kGoldenRevision8, 0x7b7d2031be004e94},
+    {9, kGoldenRevision9, 0xb75cb37d4faeb3c5},   {10, kGoldenRevision10, 0x6d5ddd69b485de71},
+    {11, kGoldenRevision11, 0x4162fa4fa1d24cae},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

@@ -79,6 +79,8 @@ constexpr BlockSession kSkinnedSessions[] = {
     {"touched tear, sdirk2", false, Integrator::sdirk2, 1, testing::touched_tear_inputs},
     {"touched plane, auto", false, std::nullopt, 1, testing::touched_plane_inputs},
     {"touched plane, sdirk2", false, Integrator::sdirk2, 1, testing::touched_plane_inputs},
+    {"touched edge, auto", false, std::nullopt, 1, testing::touched_edge_inputs},
+    {"touched edge, sdirk2", false, Integrator::sdirk2, 1, testing::touched_edge_inputs},
     {"two hands, auto", false, std::nullopt, 2, testing::two_hands_inputs},
     {"two hands, sdirk2", false, Integrator::sdirk2, 2, testing::two_hands_inputs},
     {"soft and two hands, auto", true, std::nullopt, 2, testing::two_hands_inputs},

@@ -38,6 +38,8 @@ constexpr Session kSessions[] = {
      testing::touched_tear_inputs},
     {"touched plane", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 1,
      testing::touched_plane_inputs},
+    {"touched edge", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 1,
+     testing::touched_edge_inputs},
     {"two hands", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 2, testing::two_hands_inputs},
     {"light", 6, 5, 5, 400, network::Structure::ctpm, Integrator::backward_euler, false, false, 1,
      testing::golden_inputs, true},

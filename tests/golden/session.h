@@ -56,6 +56,15 @@ inline Inputs touched_plane_inputs(int tick) {
   return inputs;
 }
 
+/// A scalpel takes an edge of the block off for 200 ticks, which lies between two of its nodes, then a ball presses.
+inline Inputs touched_edge_inputs(int tick) {
+  Inputs inputs = touched_cut_inputs(tick);
+  if (tick >= 200) return inputs;
+  inputs.position = {-0.05756, -0.05 + 0.0005 * tick, 0.01844};
+  inputs.world_from_tool = {0.92387953251128674, 0, 0.38268343236508977, 0};  // 45 degrees about y
+  return inputs;
+}
+
 /// A ball presses, and from tick 100 on a scalpel in the other hand cuts beside it.
 inline Inputs two_hands_inputs(int tick) {
   Inputs inputs = golden_inputs(std::min(tick, 150));
