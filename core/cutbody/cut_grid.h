@@ -80,6 +80,7 @@ class CutGrid {
   Index home_of_sphere(Index sphere) const { return home_[std::size_t(sphere)]; }
   /// The same; -1 also if the sphere carries no tissue (TornTissue).
   Index node_of_sphere(Index sphere) const { return node_of_sphere_[std::size_t(sphere)]; }
+  Index sphere_count() const { return Index(node_of_sphere_.size()); }
   /// Whether a sphere is in tissue itself.
   bool is_inside(Index sphere) const { return in_tissue(own_node_[std::size_t(sphere)]); }
   /// The nodes at the corners of the cube that a place at rest is in, without those beyond the grid.

@@ -52,6 +52,13 @@ Sight::Sight(const CutGrid& grid)
   changed_in_.assign(std::size_t(grid.count()), 0);
   find_edges({{0, 0, 0}, grid.extent()});
   find_beside_cut({{0, 0, 0}, grid.extent()});
+  find_spheres();
+}
+
+void Sight::find_spheres() {
+  node_of_sphere_.clear();
+  for (Index s = 0; s < grid_.sphere_count(); ++s) node_of_sphere_.push_back(grid_.node_of_sphere(s));
+  view_.resize(node_of_sphere_.size());
 }
 
 /// In each window that the node is in.
@@ -71,10 +78,12 @@ void Sight::update(CutGrid::NodeBox changed) {
   if (changed.low == CutGrid::Node{} && changed.high == grid_.extent()) {
     // Anything may have changed: it is found again when it is asked for.
     view_.clear(), changed_in_.assign(changed_in_.size(), round_);
-    return;
   }
   for (std::size_t s = 0; s < view_.size(); ++s)
-    if (view_[s] && grid_.is_near(changed, view_[s]->node, kMostHops + 1)) look_again(Index(s));
+    if (node_of_sphere_[s] != grid_.node_of_sphere(Index(s)) ||
+        (view_[s] && grid_.is_near(changed, view_[s]->node, kMostHops + 1)))
+      look_again(Index(s));
+  find_spheres();
 }
 
 /// Finds the edges in a box again that may be gone along, and what is at their ends.
@@ -161,7 +170,6 @@ void Sight::find_beside_cut(CutGrid::NodeBox changed) {
 }
 
 const Sight::View& Sight::view_of(Index sphere, Index node) {
-  if (std::size_t(sphere) >= view_.size()) view_.resize(std::size_t(sphere) + 1);
   std::unique_ptr<View>& known = view_[std::size_t(sphere)];
   if (!known) known = look_from(node);
   return *known;
@@ -172,10 +180,10 @@ void Sight::look_again(Index sphere) {
   std::unique_ptr<View>& known = view_[std::size_t(sphere)];
   const Index node = grid_.node_of_sphere(sphere);
   std::unique_ptr<View> view = node < 0 ? nullptr : look_from(node);
-  if (view && view->node == known->node) {
+  if (view && known && view->node == known->node) {
     mark_changes(known.get(), view.get());
   } else {
-    mark_changes(known.get(), nullptr);
+    if (known) mark_changes(known.get(), nullptr);
     if (view) mark_changes(nullptr, view.get());
   }
   known = std::move(view);

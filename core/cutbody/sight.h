@@ -88,6 +88,7 @@ class Sight {
   const View& view_of(Index sphere, Index node);
   std::unique_ptr<View> look_from(Index node) const;
   void look_again(Index sphere);
+  void find_spheres();
   void mark_changes(const View* before, const View* after);
 
   const CutGrid& grid_;
@@ -98,6 +99,7 @@ class Sight {
   Bits beside_cut_;  ///< Seen::has_cut of the eight nodes for which a window is
   Bits has_sphere_;
   std::vector<std::unique_ptr<View>> view_;  ///< of spheres; null: it is not known
+  std::vector<Index> node_of_sphere_;        ///< as of the last update
   std::uint32_t round_ = 0;
   std::vector<std::uint32_t> changed_in_;  ///< of nodes: see changed_in()
 };
