@@ -128,7 +128,9 @@ void main() {
   vec3 base = outer_colour * (1.0 + 0.20 * stain);
   base = mix(base, base * vec3(1.12, 0.86, 0.80), clamp(stain, 0.0, 1.0));
   base *= 1.0 + 0.6 * clamp(hollow, 0.0, 0.3);
-  slow = smooth_light(position, normal, base, shade, 1.0);
+  // At the outline and beyond it a normal turns away, and would mirror the dark floor along it.
+  vec3 v = normalize(eye - position);
+  slow = smooth_light(position, normalize(normal + max(0.15 - dot(normal, v), 0.0) * v), base, shade, 1.0);
   lip = crevice_stain_lip_rind.z;
 #endif
   gl_Position = clip_from_world * vec4(position, 1.0);

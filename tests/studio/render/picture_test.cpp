@@ -65,6 +65,32 @@ TEST(Picture, SilhouetteIsThatOfTheProjectedMesh) {
   EXPECT_LT(wrong, 0.02 * covered) << "of " << covered << " pixels";  // the anti-aliased outline
 }
 
+TEST(Picture, AnOutlineHasNoDarkSeam) {
+  const auto scene = make_blob_scene();
+  auto renderer = make_renderer(*scene);
+  render::DrawOptions options;
+  options.show_ground = false;
+  int seen = 0, dark = 0;
+  for (const Vec3 way : {Vec3{0.2, 1, -0.6}, Vec3{1, 0.3, -0.8}, Vec3{-0.5, -1, -0.4}}) {
+    options.camera = render::fit_camera(render::rest_bounds(scene->view), way, {0, 0, 1});
+    const render::Frame picture = renderer->draw(rest_state(scene->model), options);
+    const std::vector<bool> mask = projected_mask(scene->model.surfaces[0], options.camera);
+    const auto luma = [&](int x, int y) {
+      const std::uint8_t* p = &picture.rgb[std::size_t(3 * (y * kWidth + x))];
+      return 0.3 * p[0] + 0.59 * p[1] + 0.11 * p[2];
+    };
+    for (int x = 0; x < kWidth; ++x) {
+      int top = 0;
+      while (top + 4 < kHeight && !mask[std::size_t(top * kWidth + x)]) ++top;
+      if (top + 4 == kHeight) continue;
+      // Between the bright backdrop and the tissue the outline's own pixels are no darker than either.
+      ++seen, dark += luma(x, top) < 0.9 * std::min(luma(x, top + 2), luma(x, top + 3));
+    }
+  }
+  EXPECT_GT(seen, 500);
+  EXPECT_LT(dark, seen / 100) << dark << " of " << seen;
+}
+
 TEST(Picture, FollowsTheSpheres) {
   const auto scene = make_blob_scene();
   auto renderer = make_renderer(*scene);
