@@ -124,7 +124,10 @@ class Import {
       options.progress = [&](const std::string& stage, double share) { request_.progress(stage, 0.5 * share); };
     const Result<importers::RepairedFile> file = repair(options);
     if (!file) return with_option_names(file.errors());
-    const importers::RepairedFile lying = importers::turned(*file, request_.turn);
+    const bool is_turned = request_.turn != Vec3{};
+    const importers::RepairedFile turned =
+        is_turned ? importers::turned(*file, request_.turn) : importers::RepairedFile{};
+    const importers::RepairedFile& lying = is_turned ? turned : *file;
     FillingWish wish{request_.sphere_radius, request_.spheres};
     constexpr int kMostTries = 3;
     for (int tries = 0;; ++tries) {
@@ -191,8 +194,9 @@ class Import {
     if (is_whole) scene.organs = present_.scene.spec.organs, organs = present_.organs;
     for (const Draft& draft : drafts_) scene.organs.push_back(draft.spec), organs.push_back(draft.filled);
     scene.probes.clear(), scene.loads.clear(), scene.obstacles.clear(), scene.tools = tools_for(organs);
-    const Result<scenes::BuiltScene> built = scenes::build_model(scene, organs);
+    Result<scenes::BuiltScene> built = scenes::build_model(scene, organs);
     if (!built) return {};
+    organs.clear();
     return loading::measure_tick_work(built->model, request_.should_stop);
   }
 
@@ -264,7 +268,7 @@ class Import {
     scene.gravity = scene_.gravity, scene.tick = scene_.tick, scene.settle = scene_.settle;
     scene.solver = scene_.solver;
     scene.organs = {draft.spec};
-    scene.tools = tools_for({draft.filled});
+    scene.tools = tools_for({&draft.filled, 1});
     return scene;
   }
 
@@ -382,7 +386,7 @@ class Import {
   /// Finds a script that touches and cuts the organ where it has settled.
   Errors try_script(Draft& draft, const AnchorChoice& standing) const {
     scenes::SceneSpec scene = alone(draft);
-    scene.tools = tools_for({draft.filled});
+    scene.tools = tools_for({&draft.filled, 1});
     std::optional<ScriptChoice> choice = choose_script(scene, draft.filled, standing, request_.should_stop);
     if (!choice) return {{request_.mesh, "stopped", "nothing was written"}};
     draft.script = std::move(choice->script);

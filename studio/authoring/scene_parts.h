@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ scenes::OrganSpec organ_spec(const std::string& name, const std::string& mesh, c
                              const FilledOrgan& filled, std::optional<Vec3> colour);
 
 /// A ball and a scalpel in proportion to the organs, within the ranges of their keys.
-std::vector<scenes::ToolSpec> tools_for(const std::vector<FilledOrgan>& organs);
+std::vector<scenes::ToolSpec> tools_for(std::span<const FilledOrgan> organs);
 
 /// A camera that sees all organs from the front, a little from above.
 scenes::CameraSpec front_camera(const std::vector<FilledOrgan>& organs);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <chrono>
 
-#include "core/stepping/step.h"
-
 namespace ctpm::loading {
 namespace {
 
@@ -13,8 +11,8 @@ constexpr std::int64_t kStretch = 50;
 
 class Trial {
  public:
-  Trial(const Model& model, const State& state, const std::function<bool()>& should_stop)
-      : model_(model), now_(state), stepper_(model), should_stop_(should_stop), seen_(state.swept_organ.size()) {
+  Trial(const Model& model, stepping::Stepper& stepper, const State& state, const std::function<bool()>& should_stop)
+      : model_(model), now_(state), stepper_(stepper), should_stop_(should_stop), seen_(state.swept_organ.size()) {
     trial_.was_cut.assign(model.organs.size(), 0);
   }
 
@@ -64,7 +62,7 @@ class Trial {
 
   const Model& model_;
   State now_;
-  stepping::Stepper stepper_;
+  stepping::Stepper& stepper_;
   const std::function<bool()>& should_stop_;
   std::size_t seen_;  ///< rows of the swept surface that were looked at, times their nodes
   ScriptTrial trial_;
@@ -73,9 +71,10 @@ class Trial {
 
 }  // namespace
 
-std::optional<ScriptTrial> try_script(const Model& model, const State& state, const scenes::Script& script,
-                                      std::optional<std::size_t> until_cut, const std::function<bool()>& should_stop) {
-  return Trial(model, state, should_stop).run(script, until_cut);
+std::optional<ScriptTrial> try_script(const Model& model, stepping::Stepper& stepper, const State& state,
+                                      const scenes::Script& script, std::optional<std::size_t> until_cut,
+                                      const std::function<bool()>& should_stop) {
+  return Trial(model, stepper, state, should_stop).run(script, until_cut);
 }
 
 }  // namespace ctpm::loading

@@ -7,6 +7,7 @@
 
 #include "core/model/model.h"
 #include "core/model/state.h"
+#include "core/stepping/step.h"
 #include "scenes/script.h"
 
 namespace ctpm::loading {
@@ -20,10 +21,10 @@ struct ScriptTrial {
   double tick_time = 0;       ///< median of all ticks on this machine [s]
 };
 
-/// Runs a script from `state`. Ends early, where `until_cut` names an organ, when a tool felt force and that organ was
-/// cut. None if `should_stop` ended it.
-std::optional<ScriptTrial> try_script(const Model& model, const State& state, const scenes::Script& script,
-                                      std::optional<std::size_t> until_cut = {},
+/// Runs a script from `state` with a Stepper of the Model. Ends early, where `until_cut` names an organ, when a tool
+/// felt force and that organ was cut. None if `should_stop` ended it.
+std::optional<ScriptTrial> try_script(const Model& model, stepping::Stepper& stepper, const State& state,
+                                      const scenes::Script& script, std::optional<std::size_t> until_cut = {},
                                       const std::function<bool()>& should_stop = {});
 
 }  // namespace ctpm::loading
