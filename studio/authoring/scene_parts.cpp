@@ -125,4 +125,30 @@ std::string free_name(std::string name, const std::vector<std::string>& taken) {
     if (const std::string next = name + "-" + std::to_string(number); !is_taken(next)) return next;
 }
 
+namespace {
+
+void rename_tool(scenes::Script& script, const std::string& from, const std::string& to) {
+  for (scenes::ScriptStep& step : script.steps)
+    if (step.take && step.take->tool == from) step.take->tool = to;
+}
+
+}  // namespace
+
+void name_tools(scenes::Script& script, std::vector<scenes::ToolSpec> tools, scenes::SceneSpec& scene) {
+  for (scenes::ToolSpec& tool : tools) {
+    const auto own = std::find_if(scene.tools.begin(), scene.tools.end(),
+                                  [&](const scenes::ToolSpec& t) { return t.kind == tool.kind; });
+    if (own == scene.tools.end()) {
+      std::vector<std::string> taken;
+      for (const scenes::ToolSpec& t : scene.tools) taken.push_back(t.name);
+      const std::string old = tool.name;
+      tool.name = free_name(tool.name, taken);
+      rename_tool(script, old, tool.name);
+      scene.tools.push_back(tool);
+    } else {
+      rename_tool(script, tool.name, own->name);
+    }
+  }
+}
+
 }  // namespace ctpm::authoring

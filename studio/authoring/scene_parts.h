@@ -7,6 +7,7 @@
 
 #include "core/model/organ.h"
 #include "scenes/scene_spec.h"
+#include "scenes/script.h"
 #include "studio/authoring/tissue_choice.h"
 
 namespace ctpm::authoring {
@@ -33,5 +34,8 @@ std::string file_name_of(const std::string& name);
 
 /// `name`, with a number behind it if it is taken; never empty.
 std::string free_name(std::string name, const std::vector<std::string>& taken);
+
+/// Gives a script of `tools` the names of the scene's own of the same kind, and the scene those that it lacks.
+void name_tools(scenes::Script& script, std::vector<scenes::ToolSpec> tools, scenes::SceneSpec& scene);
 
 }  // namespace ctpm::authoring

@@ -54,6 +54,7 @@ TEST(ScriptTrial, DoesNotDependOnWhatItsStepperDidBefore) {
     EXPECT_EQ(trial->most_force, first->most_force);
     EXPECT_EQ(trial->severed, first->severed);
     EXPECT_EQ(trial->was_cut, first->was_cut);
+    EXPECT_GT(trial->dearest_work, trial->usual_work);
   }
 }
 
