@@ -57,7 +57,7 @@ Result<AnchorChoice> try_anchors(scenes::SceneSpec& scene, const FilledOrgan& or
   if (!built) return built.errors();
   choice.model = std::move(built->model);
   std::optional<loading::Standing> standing =
-      loading::settle_scene(choice.model, std::llround(scene.settle / scene.tick), most_sag, should_stop);
+      loading::settle_without_tools(choice.model, std::llround(scene.settle / scene.tick), most_sag, should_stop);
   if (!standing) return Error{"organ " + scene.organs[0].name, "stopped", ""};
   choice.standing = *std::move(standing);
   return choice;

@@ -47,7 +47,8 @@ struct Draft {
   scenes::OrganSpec spec;
   scenes::Script script;
   ImportedPart part;
-  double strain = 0;  ///< of its capsule against what is below it
+  double strain = 0;                        ///< of its capsule against what is below it
+  double usual_work = 0, dearest_work = 0;  ///< of the script's ticks, as in loading::ScriptTrial [s]
 
   void note(const char* code, std::string found, std::string done, std::string remains) {
     part.report.findings.push_back({code, 1, {}, std::move(found), std::move(done), std::move(remains)});
@@ -61,9 +62,19 @@ class Import {
 
   Result<ImportOutcome> run() {
     if (Errors errors = check_files(); !errors.empty()) return errors;
-    if (Errors errors = fill(); !errors.empty()) return errors;
-    for (Draft& draft : drafts_)
-      if (Errors errors = finish(draft); !errors.empty()) return errors;
+    std::optional<std::int64_t> fewer;
+    constexpr int kMostTries = 3;
+    for (int tries = 1; tries == 1 || (fewer && tries <= kMostTries); ++tries) {
+      if (Errors errors = fill(fewer); !errors.empty()) return errors;
+      for (Draft& draft : drafts_)
+        if (Errors errors = finish(draft); !errors.empty()) return errors;
+      fewer = count_that_holds();
+    }
+    if (request_.kilohertz && dearest_work() > 1e-3 / *request_.kilohertz)
+      drafts_.front().note("too_slow",
+                           "where tools press and cut, ticks take up to " +
+                               output::short_number(1e3 * dearest_work(), 3) + " ms here (p99)",
+                           "none", "it does not hold the rate that was asked for on this machine now");
     if (stops()) return Error{request_.mesh, "stopped", "nothing was written"};
     return write();
   }
@@ -108,8 +119,9 @@ class Import {
 
   std::string beside(const std::string& name) const { return (fs::path(place_) / name).string(); }
 
-  /// Reads, repairs and fills the file, and makes a draft of each organ.
-  Errors fill() {
+  /// Reads, repairs and fills the file, once it has been repaired only the last, and makes a draft of each organ.
+  /// `spheres`: in all; unset: as asked for.
+  Errors fill(std::optional<std::int64_t> spheres) {
     const Result<Tissue> whole = choose_tissue(place_, request_.organ, {fs::path(request_.mesh).stem().string()});
     if (!whole) return whole.errors();
     importers::ImportOptions options;
@@ -122,18 +134,24 @@ class Import {
     options.should_stop = request_.should_stop;
     if (request_.progress)
       options.progress = [&](const std::string& stage, double share) { request_.progress(stage, 0.5 * share); };
-    const Result<importers::RepairedFile> file = repair(options);
-    if (!file) return with_option_names(file.errors());
-    const importers::RepairedFile lying = importers::turned(*file, request_.turn);
-    FillingWish wish{request_.sphere_radius, request_.spheres};
+    if (!file_) {
+      Result<importers::RepairedFile> repaired = repair(options);
+      if (!repaired) return with_option_names(repaired.errors());
+      file_ = *std::move(repaired);
+    }
+    const bool is_turned = request_.turn != Vec3{};
+    const importers::RepairedFile turned =
+        is_turned ? importers::turned(*file_, request_.turn) : importers::RepairedFile{};
+    const importers::RepairedFile& lying = is_turned ? turned : *file_;
+    FillingWish wish{request_.sphere_radius, spheres ? spheres : request_.spheres};
     constexpr int kMostTries = 3;
     for (int tries = 0;; ++tries) {
       Result<std::vector<importers::ImportedOrgan>> filled =
           fill_all(lying, options, wish, whole->preset->sphere_radius);
       if (!filled) return filled.errors();
-      if (Errors errors = make_drafts(*file, *whole, *std::move(filled)); !errors.empty()) return errors;
+      if (Errors errors = make_drafts(*file_, *whole, *std::move(filled)); !errors.empty()) return errors;
       if (Errors errors = check_extent(); !errors.empty()) return errors;
-      const std::optional<std::int64_t> better = better_count();
+      const std::optional<std::int64_t> better = spheres ? std::nullopt : better_count();
       if (!better || tries == kMostTries) return {};
       wish.spheres = better;
     }
@@ -183,6 +201,24 @@ class Import {
     return std::max(std::int64_t(wanted), kFewestSpheres);
   }
 
+  /// Processor time of a tick in which a script presses or cuts one of the drafts, p99 [s].
+  double dearest_work() const {
+    double usual = 0, more = 0;
+    for (const Draft& draft : drafts_)
+      usual += draft.usual_work, more = std::max(more, draft.dearest_work - draft.usual_work);
+    return usual + more;
+  }
+
+  /// The number of spheres that holds the rate that was asked for where tools press and cut; none if the drafts do.
+  std::optional<std::int64_t> count_that_holds() const {
+    constexpr double kSpare = 0.9;
+    const double share = request_.kilohertz ? 1e-3 / *request_.kilohertz / dearest_work() : 1;
+    std::int64_t spheres = 0;
+    for (const Draft& draft : drafts_) spheres += draft.part.report.fill.spheres;
+    if (share >= 1 || spheres <= kFewestSpheres) return {};
+    return std::max(std::int64_t(kSpare * share * double(spheres)), kFewestSpheres);
+  }
+
   /// Time of a tick of all drafts at rest, or of the whole scene [s]; none if they cannot be built.
   std::optional<double> time_of_tick(bool is_whole = false) const {
     scenes::SceneSpec scene = scene_;
@@ -191,8 +227,9 @@ class Import {
     if (is_whole) scene.organs = present_.scene.spec.organs, organs = present_.organs;
     for (const Draft& draft : drafts_) scene.organs.push_back(draft.spec), organs.push_back(draft.filled);
     scene.probes.clear(), scene.loads.clear(), scene.obstacles.clear(), scene.tools = tools_for(organs);
-    const Result<scenes::BuiltScene> built = scenes::build_model(scene, organs);
+    Result<scenes::BuiltScene> built = scenes::build_model(scene, organs);
     if (!built) return {};
+    organs.clear();
     return loading::measure_tick_work(built->model, request_.should_stop);
   }
 
@@ -264,7 +301,7 @@ class Import {
     scene.gravity = scene_.gravity, scene.tick = scene_.tick, scene.settle = scene_.settle;
     scene.solver = scene_.solver;
     scene.organs = {draft.spec};
-    scene.tools = tools_for({draft.filled});
+    scene.tools = tools_for({&draft.filled, 1});
     return scene;
   }
 
@@ -382,10 +419,12 @@ class Import {
   /// Finds a script that touches and cuts the organ where it has settled.
   Errors try_script(Draft& draft, const AnchorChoice& standing) const {
     scenes::SceneSpec scene = alone(draft);
-    scene.tools = tools_for({draft.filled});
-    std::optional<ScriptChoice> choice = choose_script(scene, draft.filled, standing, request_.should_stop);
+    scene.tools = tools_for({&draft.filled, 1});
+    std::optional<ScriptChoice> choice =
+        choose_script(scene, draft.filled, standing, request_.kilohertz.has_value(), request_.should_stop);
     if (!choice) return {{request_.mesh, "stopped", "nothing was written"}};
     draft.script = std::move(choice->script);
+    draft.usual_work = choice->usual_work, draft.dearest_work = choice->dearest_work;
     draft.part.most_force = choice->most_force, draft.part.was_cut = choice->was_cut;
     if (!choice->was_cut || !(choice->most_force > 0))
       draft.note("script_misses",
@@ -405,8 +444,9 @@ class Import {
       scene_.organs.push_back(draft.spec);
       script.steps.insert(script.steps.end(), draft.script.steps.begin(), draft.script.steps.end());
     }
-    if (!request_.into) scene_.tools = tools_for(organs), scene_.cameras = {front_camera(organs)};
-    name_tools(script);
+    std::vector<scenes::ToolSpec> tools = tools_for(organs);
+    if (!request_.into) scene_.tools = tools, scene_.cameras = {front_camera(organs)};
+    name_tools(script, std::move(tools), scene_);
     // A camera that an import placed shall see the new organs too; one of the author's own stays.
     if (request_.into && scene_.cameras == std::vector{front_camera(present_.organs)}) {
       organs.insert(organs.end(), present_.organs.begin(), present_.organs.end());
@@ -416,7 +456,7 @@ class Import {
     outcome.script_file = beside(script_name + ".script.json");
     if (const Result<Done> is_new = output::check_new(outcome.script_file, request_.overwrite); !is_new)
       return is_new.errors();
-    outcome.tick_time = time_of_tick(true).value_or(0);
+    outcome.tick_time = time_of_tick(true).value_or(0), outcome.dearest_time = dearest_work();
     for (Draft& draft : drafts_) {
       const importers::CheckedMesh& mesh = draft.mesh;
       if (const Result<Done> written = importers::write_obj(draft.part.mesh_file, mesh.vertex, mesh.triangle); !written)
@@ -431,30 +471,6 @@ class Import {
     if (const Result<Done> written = output::write_text_file(request_.scene, text); !written) return written.errors();
     folder_.keep();
     return outcome;
-  }
-
-  /// Gives the script the names of a scene's own tools, and the scene those that it lacks.
-  void name_tools(scenes::Script& script) {
-    std::vector<FilledOrgan> organs;
-    for (const Draft& draft : drafts_) organs.push_back(draft.filled);
-    for (scenes::ToolSpec& tool : tools_for(organs)) {
-      const auto own = std::find_if(scene_.tools.begin(), scene_.tools.end(),
-                                    [&](const scenes::ToolSpec& t) { return t.kind == tool.kind; });
-      if (own == scene_.tools.end()) {
-        std::vector<std::string> taken;
-        for (const scenes::ToolSpec& t : scene_.tools) taken.push_back(t.name);
-        const std::string old = tool.name;
-        tool.name = free_name(tool.name, taken);
-        rename(script, old, tool.name);
-        scene_.tools.push_back(tool);
-      } else {
-        rename(script, tool.name, own->name);
-      }
-    }
-  }
-  static void rename(scenes::Script& script, const std::string& from, const std::string& to) {
-    for (scenes::ScriptStep& step : script.steps)
-      if (step.take && step.take->tool == from) step.take->tool = to;
   }
 
   /// Errors of importers/ and scenes/, which know no options, with the option that helps.
@@ -475,6 +491,7 @@ class Import {
   NewFolder folder_;
   loading::LoadedScene present_;  ///< to which organs are added; empty: a new scene
   scenes::SceneSpec scene_;
+  std::optional<importers::RepairedFile> file_;
   std::vector<Draft> drafts_;
 };
 

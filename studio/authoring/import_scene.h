@@ -75,6 +75,7 @@ struct ImportOutcome {
   std::string scene_file;            ///< ImportRequest::scene
   std::string script_file;           ///< written beside the scene
   double tick_time = 0;              ///< of the whole scene at rest, on this machine [s]
+  double dearest_time = 0;           ///< of its ticks where the scripts press and cut the new organs, p99 [s]
 };
 
 /// Imports a mesh and writes a scene that runs without changes: `NAME.json` with its stiffness fitted, each repaired

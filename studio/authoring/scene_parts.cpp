@@ -13,7 +13,7 @@ struct Box {
   Vec3 least{INFINITY, INFINITY, INFINITY}, most{-INFINITY, -INFINITY, -INFINITY};
 };
 
-Box box_of(const std::vector<FilledOrgan>& organs) {
+Box box_of(std::span<const FilledOrgan> organs) {
   Box box;
   for (const FilledOrgan& organ : organs)
     for (const Vec3& p : organ.surface.vertex) {
@@ -54,13 +54,13 @@ scenes::OrganSpec organ_spec(const std::string& name, const std::string& mesh, c
   return spec;
 }
 
-std::vector<scenes::ToolSpec> tools_for(const std::vector<FilledOrgan>& organs) {
+std::vector<scenes::ToolSpec> tools_for(std::span<const FilledOrgan> organs) {
   // A ball of 2.5 sphere radii of the coarsest organ; a blade of 0.7 of the tallest organ's height, but that of a
   // scalpel at least, 40 mm, and as long as its key allows at most.
   constexpr double kShortest = 0.04, kLongest = 0.5, kLargestBall = 0.2;
   double radius = 0, height = 0;
   for (const FilledOrgan& organ : organs) {
-    const Box box = box_of({organ});
+    const Box box = box_of({&organ, 1});
     radius = std::max(radius, organ.sphere_radius), height = std::max(height, box.most.z - box.least.z);
   }
   scenes::ToolSpec ball, scalpel;
@@ -93,7 +93,7 @@ Vec3 place_beside(const std::vector<FilledOrgan>& present, const std::vector<Fil
 
 double overlap(const FilledOrgan& organ, const FilledOrgan& other) {
   const double reach = 0.5 * other.spacing;
-  const Box box = box_of({other});
+  const Box box = box_of({&other, 1});
   const auto is_in_box = [&](Vec3 p) {
     return p.x > box.least.x && p.y > box.least.y && p.z > box.least.z && p.x < box.most.x && p.y < box.most.y &&
            p.z < box.most.z;
@@ -123,6 +123,32 @@ std::string free_name(std::string name, const std::vector<std::string>& taken) {
   if (!is_taken(name)) return name;
   for (int number = 2;; ++number)
     if (const std::string next = name + "-" + std::to_string(number); !is_taken(next)) return next;
+}
+
+namespace {
+
+void rename_tool(scenes::Script& script, const std::string& from, const std::string& to) {
+  for (scenes::ScriptStep& step : script.steps)
+    if (step.take && step.take->tool == from) step.take->tool = to;
+}
+
+}  // namespace
+
+void name_tools(scenes::Script& script, std::vector<scenes::ToolSpec> tools, scenes::SceneSpec& scene) {
+  for (scenes::ToolSpec& tool : tools) {
+    const auto own = std::find_if(scene.tools.begin(), scene.tools.end(),
+                                  [&](const scenes::ToolSpec& t) { return t.kind == tool.kind; });
+    if (own == scene.tools.end()) {
+      std::vector<std::string> taken;
+      for (const scenes::ToolSpec& t : scene.tools) taken.push_back(t.name);
+      const std::string old = tool.name;
+      tool.name = free_name(tool.name, taken);
+      rename_tool(script, old, tool.name);
+      scene.tools.push_back(tool);
+    } else {
+      rename_tool(script, tool.name, own->name);
+    }
+  }
 }
 
 }  // namespace ctpm::authoring

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/model/organ.h"
 #include "scenes/scene_spec.h"
+#include "scenes/script.h"
 #include "studio/authoring/tissue_choice.h"
 
 namespace ctpm::authoring {
@@ -15,7 +17,7 @@ scenes::OrganSpec organ_spec(const std::string& name, const std::string& mesh, c
                              const FilledOrgan& filled, std::optional<Vec3> colour);
 
 /// A ball and a scalpel in proportion to the organs, within the ranges of their keys.
-std::vector<scenes::ToolSpec> tools_for(const std::vector<FilledOrgan>& organs);
+std::vector<scenes::ToolSpec> tools_for(std::span<const FilledOrgan> organs);
 
 /// A camera that sees all organs from the front, a little from above.
 scenes::CameraSpec front_camera(const std::vector<FilledOrgan>& organs);
@@ -32,5 +34,8 @@ std::string file_name_of(const std::string& name);
 
 /// `name`, with a number behind it if it is taken; never empty.
 std::string free_name(std::string name, const std::vector<std::string>& taken);
+
+/// Gives a script of `tools` the names of the scene's own of the same kind, and the scene those that it lacks.
+void name_tools(scenes::Script& script, std::vector<scenes::ToolSpec> tools, scenes::SceneSpec& scene);
 
 }  // namespace ctpm::authoring

@@ -15,11 +15,14 @@ struct ScriptChoice {
   scenes::Script script;
   double most_force = 0;  ///< on a tool [N]
   bool was_cut = false;
+  double usual_work = 0, dearest_work = 0;  ///< as in loading::ScriptTrial [s]
 };
 
 /// Finds a script that touches and cuts the only organ of `scene`, `filled` at rest, where it has settled: at the usual
-/// place first, then at others; else one that touches it. None if `should_stop` ended it.
+/// place first, then at others; else one that touches it. `is_timed`: each is run to its end, so that the times of its
+/// ticks are those of the whole cut. None if `should_stop` ended it.
 std::optional<ScriptChoice> choose_script(const scenes::SceneSpec& scene, const FilledOrgan& filled,
-                                          const AnchorChoice& standing, const std::function<bool()>& should_stop);
+                                          const AnchorChoice& standing, bool is_timed,
+                                          const std::function<bool()>& should_stop);
 
 }  // namespace ctpm::authoring

@@ -112,9 +112,12 @@ std::string solver_of(const Model& model, const stepping::IntegratorChoice& choi
   std::string words = stepping::name_of(choice.integrator);
   if (choice.substeps > 1) words += ", " + std::to_string(choice.substeps) + " substeps a tick";
   if (choice.integrator == Integrator::leapfrog) return words;
-  char limits[96];
-  std::snprintf(limits, sizeof limits, ", conjugate gradients to a residual of %g, at most %d iterations",
-                model.solver.tolerance, model.solver.max_iterations);
+  char limits[160];
+  std::snprintf(
+      limits, sizeof limits,
+      ", conjugate gradients to a residual of %g or below %g mm/s (velocity_floor_mm_per_s), whichever is first, at "
+      "most %d iterations",
+      model.solver.tolerance, 1e3 * model.solver.velocity_floor, model.solver.max_iterations);
   return words + limits;
 }
 

@@ -1,9 +1,8 @@
 #include "studio/loading/script_trial.h"
 
-#include <algorithm>
-#include <chrono>
+#include <time.h>
 
-#include "core/stepping/step.h"
+#include <algorithm>
 
 namespace ctpm::loading {
 namespace {
@@ -11,10 +10,25 @@ namespace {
 /// Ticks between two looks at `should_stop`.
 constexpr std::int64_t kStretch = 50;
 
+/// Of this thread [s].
+double processor_time() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+/// The value that this share of them does not exceed; 0 of none.
+double part_of(std::vector<double>& values, double share) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 class Trial {
  public:
-  Trial(const Model& model, const State& state, const std::function<bool()>& should_stop)
-      : model_(model), now_(state), stepper_(model), should_stop_(should_stop), seen_(state.swept_organ.size()) {
+  Trial(const Model& model, stepping::Stepper& stepper, const State& state, const std::function<bool()>& should_stop)
+      : model_(model), now_(state), stepper_(stepper), should_stop_(should_stop), seen_(state.swept_organ.size()) {
     trial_.was_cut.assign(model.organs.size(), 0);
   }
 
@@ -35,10 +49,11 @@ class Trial {
   bool stops(std::int64_t tick) const { return tick % kStretch == 0 && should_stop_ && should_stop_(); }
 
   stepping::StepReport step(const Inputs& inputs) {
-    using Clock = std::chrono::steady_clock;
-    const Clock::time_point start = Clock::now();
+    const double start = processor_time();
     const stepping::StepReport report = stepper_.step(now_, inputs);
-    times_.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    const double work = processor_time() - start;
+    work_.push_back(work);
+    if (report.of_hand(0).contacts > 0 || report.of_hand(1).contacts > 0) busy_.push_back(work);
     trial_.is_refused = stepping::is_refused(report.status);
     return report;
   }
@@ -54,28 +69,25 @@ class Trial {
   }
 
   ScriptTrial finished() {
-    if (!times_.empty()) {
-      const auto middle = times_.begin() + std::ptrdiff_t(times_.size() / 2);
-      std::nth_element(times_.begin(), middle, times_.end());
-      trial_.tick_time = *middle;
-    }
+    trial_.usual_work = part_of(work_, 0.5), trial_.dearest_work = part_of(busy_, 0.99);
     return trial_;
   }
 
   const Model& model_;
   State now_;
-  stepping::Stepper stepper_;
+  stepping::Stepper& stepper_;
   const std::function<bool()>& should_stop_;
   std::size_t seen_;  ///< rows of the swept surface that were looked at, times their nodes
   ScriptTrial trial_;
-  std::vector<double> times_;
+  std::vector<double> work_, busy_;  ///< processor time of all ticks, and of those in contact or in a cut [s]
 };
 
 }  // namespace
 
-std::optional<ScriptTrial> try_script(const Model& model, const State& state, const scenes::Script& script,
-                                      std::optional<std::size_t> until_cut, const std::function<bool()>& should_stop) {
-  return Trial(model, state, should_stop).run(script, until_cut);
+std::optional<ScriptTrial> try_script(const Model& model, stepping::Stepper& stepper, const State& state,
+                                      const scenes::Script& script, std::optional<std::size_t> until_cut,
+                                      const std::function<bool()>& should_stop) {
+  return Trial(model, stepper, state, should_stop).run(script, until_cut);
 }
 
 }  // namespace ctpm::loading

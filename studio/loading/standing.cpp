@@ -1,8 +1,10 @@
 #include "studio/loading/standing.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/stepping/step.h"
+#include "studio/loading/tools_aside.h"
 
 namespace ctpm::loading {
 namespace {
@@ -40,10 +42,12 @@ bool Standing::stands() const {
   return !is_refused && std::all_of(organ.begin(), organ.end(), [](const OrganStanding& o) { return o.stands(); });
 }
 
-std::optional<Standing> settle_scene(const Model& model, std::int64_t ticks, std::optional<double> most_sag,
-                                     const std::function<bool()>& should_stop) {
+namespace {
+
+std::optional<Standing> settle_from(State rest, const Model& model, std::int64_t ticks, std::optional<double> most_sag,
+                                    const std::function<bool()>& should_stop) {
   Standing standing;
-  standing.state = rest_state(model);
+  standing.state = std::move(rest);
   stepping::Stepper stepper(model);
   const auto look = [&] {
     standing.organ.clear();
@@ -66,6 +70,20 @@ std::optional<Standing> settle_scene(const Model& model, std::int64_t ticks, std
   }
   look();
   return standing;
+}
+
+}  // namespace
+
+std::optional<Standing> settle_scene(const Model& model, std::int64_t ticks, std::optional<double> most_sag,
+                                     const std::function<bool()>& should_stop) {
+  return settle_from(rest_state(model), model, ticks, most_sag, should_stop);
+}
+
+std::optional<Standing> settle_without_tools(Model& model, std::int64_t ticks, std::optional<double> most_sag,
+                                             const std::function<bool()>& should_stop) {
+  State rest = rest_state(model);
+  const ToolsAside aside(model);
+  return settle_from(std::move(rest), model, ticks, most_sag, should_stop);
 }
 
 }  // namespace ctpm::loading

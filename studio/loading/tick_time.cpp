@@ -7,6 +7,7 @@
 
 #include "core/model/state.h"
 #include "core/stepping/step.h"
+#include "studio/loading/tools_aside.h"
 
 namespace ctpm::loading {
 
@@ -25,9 +26,10 @@ std::optional<double> measure_tick(const Model& model, State state, const std::f
   return times[kMeasuredTicks / 2];
 }
 
-std::optional<double> measure_tick_work(const Model& model, const std::function<bool()>& should_stop) {
+std::optional<double> measure_tick_work(Model& model, const std::function<bool()>& should_stop) {
   constexpr int kWarmUp = 20;
   State state = rest_state(model);
+  const ToolsAside aside(model);
   stepping::Stepper stepper(model);
   std::clock_t start = 0;
   for (int i = 0; i < kWarmUp + kMeasuredTicks; ++i) {

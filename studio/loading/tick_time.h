@@ -16,7 +16,7 @@ inline constexpr int kMeasuredTicks = 41;
 std::optional<double> measure_tick(const Model& model, State state, const std::function<bool()>& should_stop = {});
 
 /// Mean processor time of the first ticks of a scene that has not settled [s], which cost about what those of a press
-/// cost. None if `should_stop` ended it.
-std::optional<double> measure_tick_work(const Model& model, const std::function<bool()>& should_stop = {});
+/// cost. The Model's tools lie aside meanwhile. None if `should_stop` ended it.
+std::optional<double> measure_tick_work(Model& model, const std::function<bool()>& should_stop = {});
 
 }  // namespace ctpm::loading
