@@ -63,8 +63,7 @@ class Import {
   Result<ImportOutcome> run() {
     if (Errors errors = check_files(); !errors.empty()) return errors;
     std::optional<std::int64_t> fewer;
-    constexpr int kMostTries = 3;
-    for (int tries = 1; tries == 1 || (fewer && tries <= kMostTries); ++tries) {
+    for (int tries = 0; tries == 0 || (fewer && tries < 3); ++tries) {
       if (Errors errors = fill(fewer); !errors.empty()) return errors;
       for (Draft& draft : drafts_)
         if (Errors errors = finish(draft); !errors.empty()) return errors;
@@ -139,10 +138,9 @@ class Import {
       if (!repaired) return with_option_names(repaired.errors());
       file_ = *std::move(repaired);
     }
-    const bool is_turned = request_.turn != Vec3{};
-    const importers::RepairedFile turned =
-        is_turned ? importers::turned(*file_, request_.turn) : importers::RepairedFile{};
-    const importers::RepairedFile& lying = is_turned ? turned : *file_;
+    std::optional<importers::RepairedFile> turned;
+    if (request_.turn != Vec3{}) turned = importers::turned(*file_, request_.turn);
+    const importers::RepairedFile& lying = turned ? *turned : *file_;
     FillingWish wish{request_.sphere_radius, spheres ? spheres : request_.spheres};
     constexpr int kMostTries = 3;
     for (int tries = 0;; ++tries) {
