@@ -132,6 +132,15 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
     else if (from) trainer?.movePixels(event.clientX - from.x, event.clientY - from.y);
   };
   const leave = () => (last.current = null);
+  // The pointer's motion as it comes, not with the screen's next frame.
+  const moved = useRef(move);
+  moved.current = move;
+  useEffect(() => {
+    const target = canvas.current!, kind = "onpointerrawupdate" in target ? "pointerrawupdate" : "pointermove";
+    const take = (event: Event) => moved.current(event as PointerEvent);
+    target.addEventListener(kind, take);
+    return () => target.removeEventListener(kind, take);
+  }, []);
   const lock = (event: PointerEvent) => {
     if (phase === "running" && !trainer?.awaited && event.button === 0 && event.pointerType === "mouse")
       void Promise.resolve(canvas.current?.requestPointerLock?.()).catch(() => {});
@@ -165,7 +174,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
       </nav>
       <div class={`view ${phase}${trainer?.awaited ? " watched" : ""}`}>
         <canvas ref={canvas} tabIndex={0} aria-label={view ? `The scene ${view.name}; arrow keys move the tool` : "No scene"}
-          onPointerMove={move} onPointerDown={lock} onPointerLeave={leave} onContextMenu={(e) => e.preventDefault()} />
+          onPointerDown={lock} onPointerLeave={leave} onContextMenu={(e) => e.preventDefault()} />
         {phase === "choose" && (
           <Empty title="Choose a scene to train in">
             <p>The tool follows the mouse. The session is recorded, and measured against an expert's when you end it.</p>

@@ -21,12 +21,14 @@ export function firstCamera(view: SceneView): CameraView | undefined {
   return outside > 2 ? view.cameras.at(-1) : first;
 }
 
-/** Draws up to two scenes side by side with one camera, whenever something changed. */
+const kLookAgain = 2; // whether a picture is done [ms]
+
 /** What keys do to a view: right and up [rad], times as far away. */
 export const kTurns: { [key: string]: [number, number, number] } = {
   a: [-0.1, 0, 1], d: [0.1, 0, 1], w: [0, 0.1, 1], s: [0, -0.1, 1], "+": [0, 0, 0.9], "=": [0, 0, 0.9], "-": [0, 0, 1 / 0.9],
 };
 
+/** Draws up to two scenes side by side with one camera, whenever something changed. */
 export class Viewer {
   readonly camera = new three.PerspectiveCamera(32, 16 / 9, 0.01, 10);
   readonly controls: OrbitControls;
@@ -41,6 +43,7 @@ export class Viewer {
   fieldOfView = 32; // vertical, in a picture of 16:9 [degrees]
   isCovered = false; // by other pictures: nothing is drawn
   private isWanted = false;
+  private isBusy = false; // with the picture before
   private isTurning = false;
 
   constructor(readonly canvas: HTMLCanvasElement) {
@@ -109,14 +112,35 @@ export class Viewer {
     return { x: (0.5 + 0.5 * seen.x) * this.canvas.clientWidth, y: (0.5 - 0.5 * seen.y) * this.canvas.clientHeight };
   }
 
-  /** Draws with the next frame of the screen. */
+  /** Draws with the next frame of the screen after the picture before is done: pictures that pile up in the browser
+      would keep it from the pointer. */
   draw(): void {
     if (this.isWanted) return;
     this.isWanted = true;
+    if (!this.isBusy) this.drawNext();
+  }
+
+  private drawNext(): void {
     requestAnimationFrame(() => {
       this.isWanted = false;
       this.drawNow();
+      this.awaitPicture();
     });
+  }
+
+  private awaitPicture(): void {
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    if (!sync) return;
+    gl.flush();
+    this.isBusy = true;
+    const look = () => {
+      if (!gl.isContextLost() && gl.clientWaitSync(sync, 0, 0) === gl.TIMEOUT_EXPIRED) return void setTimeout(look, kLookAgain);
+      gl.deleteSync(sync);
+      this.isBusy = false;
+      if (this.isWanted) this.drawNext();
+    };
+    setTimeout(look, kLookAgain);
   }
 
   private drawNow(): void {
