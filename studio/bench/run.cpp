@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/model/result.h"
 #include "core/stepping/step.h"
 #include "studio/bench/bench.h"
 
@@ -48,11 +49,14 @@ BenchRun run_motion(const Model& model, const BenchMotion& motion) {
 
 double position_error(const BenchRun& run, const BenchRun& reference, const Vec3Array& rest) {
   double off = 0, size = 0;
-  for (std::size_t t = 0; t < std::min(run.position.size(), reference.position.size()); ++t)
+  for (std::size_t t = 0; t < std::min(run.position.size(), reference.position.size()); ++t) {
+    CTPM_CHECK(rest.size() <= run.position[t].size() && rest.size() <= reference.position[t].size(),
+               "places that are compared are in both runs");
     for (std::size_t i = 0; i < rest.size(); ++i) {
       const Vec3 apart = run.position[t][i] - reference.position[t][i], way = reference.position[t][i] - rest[i];
       off += dot(apart, apart), size += dot(way, way);
     }
+  }
   return size > 0 ? std::sqrt(off / size) : 0;
 }
 

@@ -12,17 +12,9 @@ namespace {
 /// One filling, and how far it is off the reference.
 struct Compared {
   PressedOrgan organ;
-  double position_error = 0, force_error = 0;  ///< of the surface: INFINITY where the spheres do not carry it
+  double position_error = 0, force_error = 0;
   bool feels = false, is_on_front = false;
 };
-
-/// Spheres that lie in one sheet do not tell how the surface moves across it: nothing can be said of more error than
-/// there is way.
-bool carries(const Compared& filling) { return std::isfinite(filling.position_error); }
-
-reports::Cell position_cell(const Compared& filling) {
-  return carries(filling) ? reports::Cell(filling.position_error) : std::string("surface not carried");
-}
 
 std::string percent(double share) { return output::short_number(100 * share, 2) + " %"; }
 
@@ -48,7 +40,7 @@ std::string recommendation(const std::string& name, const std::vector<Compared>&
     return name + ": the radius does not converge: " + why + ". No radius is recommended.";
   const Compared* best = nullptr;
   for (const Compared& f : fillings)
-    if (f.feels && carries(f) && percentile(f.organ.run.seconds, 0.99) <= tick) best = &f;
+    if (f.feels && percentile(f.organ.run.seconds, 0.99) <= tick) best = &f;
   const std::string rate = output::short_number(1e-3 / tick) + " kHz";
   if (!best) return name + ": no filling holds " + rate + " at p99 on this machine.";
   const std::vector<double>& seconds = best->organ.run.seconds;
@@ -76,11 +68,10 @@ reports::Table table_of(const std::vector<Compared>& fillings, const PressedOrga
   for (std::size_t i = 0; i < fillings.size(); ++i) {
     const Compared& f = fillings[i];
     const auto order = [&](double Compared::*error) {
-      const double found = i == 0 ? NAN : order_between(fillings[i - 1].*error, f.*error);
-      return std::isfinite(found) ? reports::Cell(found) : reports::Cell();
+      return i == 0 ? reports::Cell() : reports::Cell(order_between(fillings[i - 1].*error, f.*error));
     };
     table.rows.push_back({1e3 * f.organ.radius, f.organ.layers, f.organ.spheres, norm(f.organ.run.force.back()),
-                          position_cell(f), order(&Compared::position_error), f.force_error,
+                          f.position_error, order(&Compared::position_error), f.force_error,
                           order(&Compared::force_error), 1e3 * percentile(f.organ.run.seconds, 0.5),
                           1e3 * percentile(f.organ.run.seconds, 0.99)});
   }
@@ -122,15 +113,16 @@ Result<BenchStudy> study_of(const loading::LoadedScene& own, bool is_quick, cons
   const Result<PressedOrgan> reference = pressed(refinements.back() + kReferenceRefinements);
   if (!reference) return reference.errors();
   Vec3Array rest;
-  for (const Vec3& v : own.organs[0].surface.vertex) rest.push_back(v);
   std::vector<Compared> fillings;
   std::vector<double> cost, errors;
   for (const int refinement : refinements) {
     Result<PressedOrgan> organ = pressed(refinement);
     if (!organ) return organ.errors();
     Compared f{*std::move(organ)};
-    const double error = position_error(f.organ.run, reference->run, rest);
-    f.position_error = error <= 1 ? error : INFINITY;
+    // Finer fillings divide long triangles: the vertices of the first, the coarsest, are the first of all.
+    for (std::size_t v = rest.size(); fillings.empty() && v < f.organ.run.position.front().size(); ++v)
+      rest.push_back(own.organs[0].surface.vertex[v]);
+    f.position_error = position_error(f.organ.run, reference->run, rest);
     f.force_error = force_error(f.organ.run, reference->run), f.feels = feels(f.organ.run);
     cost.push_back(percentile(f.organ.run.seconds, 0.5)), errors.push_back(f.feels ? f.position_error : INFINITY);
     fillings.push_back(std::move(f));
@@ -142,7 +134,7 @@ Result<BenchStudy> study_of(const loading::LoadedScene& own, bool is_quick, cons
   study.section.key = "space", study.section.title = "Space: " + name + ", press, sphere radius";
   study.points = bench_layout();
   for (const Compared& f : fillings) {
-    study.points.rows.push_back(row_of("space", name, "ctpm", f.organ, tick, position_cell(f), f.force_error));
+    study.points.rows.push_back(row_of("space", name, "ctpm", f.organ, tick, f.position_error, f.force_error));
     if (f.is_on_front) study.points.rows.back().back() = std::string("front");
     study.costs.push_back({name, "space", "r = " + output::short_number(1e3 * f.organ.radius, 3) + " mm",
                            1e3 * percentile(f.organ.run.seconds, 0.5), f.force_error, &f - fillings.data() == 2});
