@@ -80,9 +80,9 @@ void add_look(CLI::App& app, views::LookRequest& request) {
   app.add_option("--full-scale", request.full_scale, "Value of the last colour of elements [%, deg or N]");
   app.add_option("--cutaway", request.cutaway, "Leave out what is before a plane across x, y or z: y, or y=12.5 in mm");
   app.add_option("--camera", request.camera,
-                 "A camera of the scene, fitted, wound where it is seen best, follow the tool, or a place and what it "
-                 "looks at in mm, as 0,-300,200:0,0,20; if not given one that sees the section or the wound, else "
-                 "the scene's first");
+                 "A camera of the scene, fitted, wound or press where it is seen best, follow the tool, or a place and "
+                 "what it looks at in mm, as 0,-300,200:0,0,20; if not given one that sees the section, the wound or "
+                 "the deepest press, else the scene's first");
 }
 
 void add_time_range(CLI::App& app, session::TimeRange& range) {

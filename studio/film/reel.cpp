@@ -38,14 +38,12 @@ Result<double> range_of(recordings::SessionReader& session, render::ElementQuant
 /// As the first one is seen, if that is of the same scene.
 Result<views::Look> look_of(recordings::SessionReader& session, const SessionFilm& film, const render::SceneView& view,
                             const render::PictureSize& size, const ExportOptions& options,
-                            const std::optional<Seen>& first) {
+                            const std::vector<Moment>& all, const std::optional<Seen>& first) {
   const render::Bounds rest = render::rest_bounds(view);
   if (first && first->rest.min == rest.min && first->rest.max == rest.max) return first->look;
-  // The last keyframe of the session, so that a part is seen as the whole is; of a damaged one, that of the part.
-  Result<recordings::Keyframe> late = session.keyframe_at_or_before(session.tick_count());
-  if (!late) late = session.keyframe_at_or_before(film.range().to);
-  if (!late) return late.errors();
-  return views::find_look(options.look, film.scene(), view, double(size.width) / size.height, &late->state);
+  const Result<State> told = telling_state(session, film.range(), all);
+  if (!told) return told.errors();
+  return views::find_look(options.look, film.scene(), view, double(size.width) / size.height, &*told);
 }
 
 }  // namespace
@@ -55,6 +53,22 @@ std::optional<render::OverlayLevel> level_of(const std::string& name) {
   if (name == "small") return render::OverlayLevel::small;
   if (name == "full") return render::OverlayLevel::full;
   return std::nullopt;
+}
+
+Result<State> telling_state(recordings::SessionReader& session, const session::TickRange& part,
+                            const std::vector<Moment>& all) {
+  Result<recordings::Keyframe> late = session.keyframe_at_or_before(session.tick_count());
+  if (!late) late = session.keyframe_at_or_before(part.to);
+  if (!late) return late.errors();
+  if (late->state.swept.size() > 0) return std::move(late->state);
+  const auto deepest =
+      std::find_if(all.begin(), all.end(), [](const Moment& m) { return m.kind == Moment::Kind::deepest; });
+  if (deepest == all.end()) return std::move(late->state);
+  Result<recordings::Keyframe> before = session.keyframe_at_or_before(deepest->tick);
+  const auto records = session.ticks(deepest->tick, deepest->tick + 1);
+  if (!before || !records) return std::move(late->state);  // damaged there
+  before->state.last_inputs = records->front().inputs;
+  return std::move(before->state);
 }
 
 Result<Shot> Reel::shoot(std::int64_t frame) const {
@@ -81,7 +95,7 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
   reel.film = std::move(*film);
   const Model& model = reel.film->model();
   render::SceneView view = views::view_of(reel.film->scene(), model);
-  const Result<views::Look> look = look_of(session, *reel.film, view, size, options, first);
+  const Result<views::Look> look = look_of(session, *reel.film, view, size, options, *all, first);
   if (!look) return look.errors();
   reel.look = *look;
   if (options.strip) reel.strip_height = strip_height(size.height);

@@ -30,13 +30,13 @@ Result<scenes::SceneText> scene_of(const recordings::SessionReader& reader) {
 }  // namespace
 
 Result<DrawingPlan> plan_drawing(const recordings::SessionReader& reader, const DrawingRequest& request,
-                                 const State* late) {
+                                 const State* told) {
   const Result<scenes::SceneText> scene = scene_of(reader);
   if (!scene) return scene.errors();
   const Model& model = reader.start().model;
   const double aspect = request.size ? double(request.size->width) / request.size->height : kPageAspect;
   Result<views::Look> look =
-      views::find_look(request.look, scene->spec, views::view_of(scene->spec, model), aspect, late);
+      views::find_look(request.look, scene->spec, views::view_of(scene->spec, model), aspect, told);
   if (!look) return look.errors();
   render::Legend legend = render::legend_of(model, look->draw);
   return DrawingPlan{std::move(*look), std::move(legend), request.size};

@@ -27,10 +27,9 @@ struct DrawingPlan {
   std::optional<render::PictureSize> size;
 };
 
-/// Checks a request. `late`: a State of the session's end, on whose wound a camera may look; null: none. Errors: those
-/// of views::find_look().
+/// Checks a request. `told` and errors: see views::find_look().
 Result<DrawingPlan> plan_drawing(const recordings::SessionReader& reader, const DrawingRequest& request,
-                                 const State* late);
+                                 const State* told);
 
 /// Draws moments of one session as a video shows them, without its overlay. One thread may use it.
 class Drawing {

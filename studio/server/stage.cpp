@@ -68,8 +68,24 @@ Result<double> Stage::full_scale(render::ElementQuantity quantity) {
   return full_scales_[quantity] = *found;
 }
 
+/// See film::telling_state(). Null: the session is damaged.
+const State* Stage::told() {
+  if (const State* last = moments_->last(); !last || last->swept.size() > 0) return last;
+  const std::lock_guard lock(told_mutex_);
+  if (!told_) {
+    Result<recordings::SessionReader> reader = recordings::SessionReader::open(reader_.path());  // of this thread
+    if (!reader) return nullptr;
+    const session::TickRange whole{0, reader->tick_count()};
+    const Result<std::vector<film::Moment>> all = film::all_moments(*reader, whole);
+    Result<State> state = film::telling_state(*reader, whole, all ? *all : std::vector<film::Moment>());
+    if (!state) return nullptr;
+    told_ = std::make_unique<State>(std::move(*state));
+  }
+  return told_.get();
+}
+
 Result<DrawingPlan> Stage::draw_as(const DrawingRequest& request, const std::vector<std::shared_ptr<Stage>>& shown) {
-  Result<DrawingPlan> plan = plan_drawing(reader_, request, moments_->last());
+  Result<DrawingPlan> plan = plan_drawing(reader_, request, told());
   if (!plan) return plan;
   if (render::DrawOptions& draw = plan->look.draw; draw.view == render::View::elements) {
     double largest = 0;

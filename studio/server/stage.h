@@ -54,6 +54,7 @@ class Stage {
   void glance();
   void end_glance();
   void wait_for_glimpse(const Wish& wish);
+  const State* told();
   Result<double> full_scale(render::ElementQuantity quantity);
   Result<bool> follow_plan(Drawing& drawing);
   std::optional<Wish> next(bool& flag);
@@ -77,6 +78,8 @@ class Stage {
   std::optional<DrawingPlan> plan_;                        ///< nothing is drawn before the first one
   bool is_plan_new_ = false;                               ///< the replay does not follow it yet
   std::map<render::ElementQuantity, double> full_scales_;  ///< of a film of this session alone
+  std::mutex told_mutex_;
+  std::unique_ptr<const State> told_;  ///< of a session without a cut, once it was asked for
   bool ends_ = false;
   std::thread replay_thread_, glimpse_thread_;
 };

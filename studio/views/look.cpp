@@ -11,7 +11,7 @@
 
 #include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
-#include "studio/views/wound_camera.h"
+#include "studio/views/event_camera.h"
 
 namespace ctpm::views {
 namespace {
@@ -161,7 +161,7 @@ Result<render::Camera> find_camera(const scenes::SceneSpec& scene, const render:
     known += (known.empty() ? "" : ", ") + camera.name;
   }
   return Error{output::option_name("look.camera"), "the scene has no camera '" + name + "'",
-               "there are: fitted, wound, follow" + (known.empty() ? "" : ", " + known) + ", or " + kPlaceHelp};
+               "there are: fitted, wound, press, follow" + (known.empty() ? "" : ", " + known) + ", or " + kPlaceHelp};
 }
 
 bool is_axis(const std::string& cutaway) { return !cutaway.empty() && cutaway[0] >= 'x' && cutaway[0] <= 'z'; }
@@ -175,13 +175,42 @@ render::Camera section_camera(const render::SceneView& view, char axis, const re
   return render::fitted_camera(view, -(across + kUsual * from), usual.up, usual.fov_deg, aspect);
 }
 
+struct NamedCamera {
+  std::string name;
+  render::Camera camera;
+};
+
+/// The camera on what a State tells: on its wound, or where there is none on its press; `only`: on that alone. Errors:
+/// the one that is asked for is not there; no OpenGL 3.3.
+Result<std::optional<NamedCamera>> find_event(const std::string& only, const render::SceneView& view, double aspect,
+                                              const render::Camera& usual, const State* told) {
+  struct Known {
+    const char* name;
+    Event event;
+    const char* missing;
+  };
+  constexpr std::array<Known, 2> kEvents{
+      {{"wound", Event::wound, "nothing is cut"}, {"press", Event::press, "nothing is pressed"}}};
+  for (const auto& [name, event, missing] : kEvents) {
+    if (!only.empty() && only != name) continue;
+    if (told) {
+      const Result<std::optional<render::Camera>> found = event_camera(event, view, *told, usual, aspect);
+      if (!found) return found.errors();
+      if (*found) return std::optional<NamedCamera>({name, **found});
+    }
+    if (only == name) return Error{output::option_name("look.camera"), "got '" + only + "', and " + missing, ""};
+  }
+  return std::optional<NamedCamera>();
+}
+
 /// Sets the camera of that name; see LookRequest::camera.
 void choose_camera(const std::string& name, const std::string& cutaway, const scenes::SceneSpec& scene,
-                   const render::SceneView& view, double aspect, const State* cut, Look& look, Errors& errors) {
+                   const render::SceneView& view, double aspect, const State* told, Look& look, Errors& errors) {
   const auto add = [&](const Errors& more) { errors.insert(errors.end(), more.begin(), more.end()); };
   bool is_the_scenes = false;
   for (const scenes::CameraSpec& camera : scene.cameras) is_the_scenes |= camera.name == name;
-  const bool is_fitted = name == "fitted" && !is_the_scenes, is_wound = name == "wound" && !is_the_scenes;
+  const bool is_fitted = name == "fitted" && !is_the_scenes;
+  const bool is_event = (name == "wound" || name == "press") && !is_the_scenes;
   look.camera = name, look.follows = name == "follow" && !is_the_scenes;
   if (is_fitted) {
     look.draw.camera = render::default_camera(view, aspect);
@@ -193,7 +222,7 @@ void choose_camera(const std::string& name, const std::string& cutaway, const sc
     look.draw.camera = *placed;
     return;
   }
-  const bool is_free = name.empty() || is_wound || look.follows;
+  const bool is_free = name.empty() || is_event || look.follows;
   const Result<render::Camera> usual = find_camera(scene, view, is_free ? "" : name, aspect);
   if (!usual) return add(usual.errors());
   look.draw.camera = *usual;
@@ -203,22 +232,18 @@ void choose_camera(const std::string& name, const std::string& cutaway, const sc
     look.draw.camera = section_camera(view, cutaway[0], *usual, aspect), look.camera = "section";
     return;
   }
-  std::optional<render::Camera> found;
-  if (cut) {
-    const Result<std::optional<render::Camera>> wound = wound_camera(view, *cut, *usual, aspect);
-    if (!wound) return add(wound.errors());
-    found = *wound;
-  }
-  if (!found && is_wound) errors.push_back({output::option_name("look.camera"), "got 'wound', and nothing is cut", ""});
-  if (!found) return;
+  const Result<std::optional<NamedCamera>> found = find_event(is_event ? name : "", view, aspect, *usual, told);
+  if (!found) return add(found.errors());
+  if (!*found) return;
+  const render::Camera& near = (*found)->camera;
   if (look.follows) {
     // It comes close by itself.
     render::Camera& camera = look.draw.camera;
-    camera = render::fitted_camera(view, found->target - found->eye, found->up, found->fov_deg, aspect);
-    camera.eye += found->target - camera.target, camera.target = found->target;
+    camera = render::fitted_camera(view, near.target - near.eye, near.up, near.fov_deg, aspect);
+    camera.eye += near.target - camera.target, camera.target = near.target;
     return;
   }
-  look.draw.camera = *found, look.camera = "wound";
+  look.draw.camera = near, look.camera = (*found)->name;
 }
 
 }  // namespace
@@ -242,7 +267,7 @@ render::DrawOptions Look::at(const render::SceneView& scene, std::span<const Inp
 }
 
 Result<Look> find_look(const LookRequest& request, const scenes::SceneSpec& scene, const render::SceneView& view,
-                       double aspect, const State* cut) {
+                       double aspect, const State* told) {
   Errors errors;
   Look look;
   if (const std::optional<render::View> found = find_view(request.view, errors)) {
@@ -253,7 +278,7 @@ Result<Look> find_look(const LookRequest& request, const scenes::SceneSpec& scen
     errors.push_back({output::option_name("look.full_scale"),
                       "got " + output::fixed(request.full_scale, 3) + ", must be more than 0", ""});
   look.draw.full_scale = request.full_scale * unit_of(look.draw.quantity);
-  choose_camera(request.camera, request.cutaway, scene, view, aspect, cut, look, errors);
+  choose_camera(request.camera, request.cutaway, scene, view, aspect, told, look, errors);
   look.draw.cutaway = find_cutaway(request.cutaway, view, look.draw.camera.eye, errors);
   if (!errors.empty()) return errors;
   return look;

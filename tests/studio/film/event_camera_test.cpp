@@ -1,4 +1,4 @@
-#include "studio/views/wound_camera.h"
+#include "studio/views/event_camera.h"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,7 @@
 
 #include "recordings/session_reader.h"
 #include "scenes/scene_file.h"
+#include "studio/film/reel.h"
 #include "studio/render/renderer.h"
 #include "studio/views/look.h"
 #include "studio/views/view_of_scene.h"
@@ -156,6 +157,64 @@ TEST_F(WoundCamera, IsTheSameEveryTimeAndTheScenesWhereNothingIsCut) {
   const auto none = views::find_look(request, scene_, view_, kAspect, &whole);
   ASSERT_FALSE(none);
   EXPECT_NE(to_string(none.errors()[0]).find("nothing is cut"), std::string::npos);
+}
+
+/// Pixels that show a place of the tissue, of which the spheres around `at` are green.
+int pixels_of(const Model& model, const State& state, Vec3 at, const render::Camera& camera) {
+  render::SceneView plain{&model, {}, std::vector<render::Colour>(state.position.size(), {0.25, 0.25, 0.25})};
+  for (std::size_t i = 0; i < state.position.size(); ++i)
+    if (norm(state.position[i] - at) < 0.012) plain.sphere_colours[i] = {0, 0.9, 0};
+  auto renderer = render::Renderer::create(640, 360, plain);
+  EXPECT_TRUE(renderer);
+  render::DrawOptions options;
+  options.camera = camera, options.view = render::View::spheres;
+  const render::Frame frame = (*renderer)->draw(state, options);
+  int count = 0;
+  for (std::size_t i = 0; i < frame.rgb.size(); i += 3)
+    count += frame.rgb[i + 1] > frame.rgb[i] + 25 && frame.rgb[i + 1] > frame.rgb[i + 2] + 25;
+  return count;
+}
+
+TEST(PressCamera, SeesThePressedTissueOfEachSession) {
+  for (const char* name : {"liver-press-expert", "liver-press-clumsy"}) {
+    auto reader =
+        recordings::SessionReader::open(std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/" + name + ".ctpm");
+    ASSERT_TRUE(reader);
+    const session::TickRange whole{0, reader->tick_count()};
+    const auto all = film::all_moments(*reader, whole);
+    ASSERT_TRUE(all);
+    const auto told = film::telling_state(*reader, whole, *all);
+    const auto text = scenes::read_scene(reader->start().scene_text, "scene");
+    ASSERT_TRUE(told && text);
+    const render::SceneView view = views::view_of(text->spec, reader->start().model);
+    views::LookRequest request;
+    const auto chosen = views::find_look(request, text->spec, view, kAspect, &*told);
+    request.camera = "front";
+    const auto front = views::find_look(request, text->spec, view, kAspect, &*told);
+    ASSERT_TRUE(chosen && front);
+    EXPECT_EQ(chosen->camera, "press") << name;
+    const auto seen = [&](const views::Look& look) {
+      return pixels_of(reader->start().model, *told, told->last_inputs.position, look.draw.camera);
+    };
+    EXPECT_GT(2 * seen(*chosen), 3 * seen(*front)) << name;
+    const render::Pixel at = render::project(chosen->draw.camera, 1280, 720, told->last_inputs.position);
+    EXPECT_TRUE(at.x > 400 && at.x < 880 && at.y > 150 && at.y < 570) << at.x << ", " << at.y;
+  }
+}
+
+TEST_F(WoundCamera, IsTheOneOfASessionThatIsCutAndPressed) {
+  State pressed = cut_;
+  const auto& tools = reader_->start().model.tools;
+  const auto ball = std::find_if(tools.begin(), tools.end(), [](const Tool& t) { return t.kind == ToolKind::ball; });
+  views::LookRequest request;
+  request.camera = "press";
+  const auto none = views::find_look(request, scene_, view_, kAspect, &cut_);
+  ASSERT_FALSE(none) << "a blade does not press";
+  EXPECT_NE(to_string(none.errors()[0]).find("nothing is pressed"), std::string::npos);
+  if (ball == tools.end()) GTEST_SKIP() << "the kidney has no ball";
+  pressed.last_inputs.tool = std::int32_t(ball - tools.begin()), pressed.last_inputs.position = cut_.position[0];
+  EXPECT_EQ(look("", &pressed).camera, "wound");
+  EXPECT_EQ(look("press", &pressed).camera, "press");
 }
 
 }  // namespace

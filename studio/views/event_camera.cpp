@@ -1,4 +1,4 @@
-#include "studio/views/wound_camera.h"
+#include "studio/views/event_camera.h"
 
 #include <algorithm>
 #include <array>
@@ -55,10 +55,49 @@ std::vector<Vec3> directions(const Model& model, const Camera& usual) {
   return found;
 }
 
-/// Pixels that show walls and lips of cuts, which are green on grey organs.
-int visible_wound(render::Renderer& renderer, const State& state, const Camera& camera) {
+/// An event where a camera can look for it: all of it is green, and everything else is grey.
+struct Subject {
+  render::SceneView scene;
+  render::View view = render::View::surface;
+  std::vector<Vec3> points;  ///< its places [m]; empty: there is no such event
+};
+
+constexpr render::Colour kGrey{0.25, 0.25, 0.25}, kGreen{0, 0.9, 0};
+
+/// Walls and lips of cuts.
+Subject wound_of(const render::SceneView& scene, const State& state) {
+  Subject subject{{scene.model, {}, {}}, render::View::surface, {}};
+  if (state.swept.size() == 0) return subject;
+  for (const OrganRange& organ : scene.model->organs) subject.scene.looks.push_back({organ.name, kGrey, kGreen, 0, {}});
+  subject.points = walls_of(scene, state);
+  return subject;
+}
+
+/// Spheres of the outermost layer around the tools.
+Subject press_of(const render::SceneView& scene, const State& state) {
+  constexpr double kAround = 1.5;  // spacings of the organ beyond a tool's surface
+  const Model& model = *scene.model;
+  Subject subject{{&model, {}, {}}, render::View::spheres, {}};
+  subject.scene.sphere_colours.assign(state.position.size(), kGrey);
+  for (std::size_t number = 0; number < kMostHands; ++number) {
+    const Hand& hand = state.last_inputs.hand(number);
+    if (hand.tool < 0 || model.tools[std::size_t(hand.tool)].kind == ToolKind::scalpel) continue;
+    for (const OrganRange& organ : model.organs)
+      for (auto i = std::size_t(organ.first); i < std::size_t(organ.first + organ.count); ++i) {
+        const double reach = model.tools[std::size_t(hand.tool)].radius + kAround * organ.spacing;
+        if (model.layer[i] != 1 || norm(state.position[i] - hand.position) > reach) continue;
+        subject.scene.sphere_colours[i] = kGreen;
+        subject.points.push_back(state.position[i]);
+      }
+  }
+  return subject;
+}
+
+/// Pixels that show the subject.
+int visible(render::Renderer& renderer, const Subject& subject, const State& state, const Camera& camera) {
   render::DrawOptions options;
-  options.camera = camera, options.show_ground = options.show_tool = false;
+  options.camera = camera, options.view = subject.view, options.show_ground = false;
+  options.show_tool = subject.view == render::View::spheres;  // a blade that stays in its cut covers it
   const render::Frame frame = renderer.draw(state, options);
   int count = 0;
   for (std::size_t i = 0; i < frame.rgb.size(); i += 3)
@@ -66,13 +105,13 @@ int visible_wound(render::Renderer& renderer, const State& state, const Camera& 
   return count;
 }
 
-/// The wound, and of the organs what lies around it: at least a part of their size.
-std::vector<Vec3> framed(const render::SceneView& scene, const std::vector<Vec3>& walls, double aspect) {
+/// The event, and of the organs what lies around it: at least a part of their size.
+std::vector<Vec3> framed(const render::SceneView& scene, const std::vector<Vec3>& event, double aspect) {
   const double around = aspect < 1.4 ? 0.8 : 0.62;  // of the organs' diagonal; a narrow picture has no room aside
   const render::Bounds organs = render::rest_bounds(scene);
-  const Vec3 middle = render::bounds_of(walls).centre();
+  const Vec3 middle = render::bounds_of(event).centre();
   const double reach = 0.5 * around * organs.diagonal();
-  std::vector<Vec3> points = walls;
+  std::vector<Vec3> points = event;
   for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
     for (const double sign : {-1.0, 1.0}) points.push_back(middle + sign * reach * axis);
   return points;
@@ -80,26 +119,22 @@ std::vector<Vec3> framed(const render::SceneView& scene, const std::vector<Vec3>
 
 }  // namespace
 
-Result<std::optional<Camera>> wound_camera(const render::SceneView& scene, const State& state, const Camera& usual,
-                                           double aspect) {
+Result<std::optional<Camera>> event_camera(Event event, const render::SceneView& scene, const State& state,
+                                           const Camera& usual, double aspect) {
   constexpr int kWidth = 224, kHeight = 126;
   constexpr double kUsualCounts = 0.5;  // what is seen from the other side counts so much less
-  if (state.swept.size() == 0) return std::optional<Camera>();
-  const std::vector<Vec3> walls = walls_of(scene, state);
-  if (walls.empty()) return std::optional<Camera>();
-  render::SceneView plain{scene.model, {}, {}};
-  for (const OrganRange& organ : scene.model->organs)
-    plain.looks.push_back({organ.name, {0.25, 0.25, 0.25}, {0, 0.9, 0}, 0, {}});
-  Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(kWidth, kHeight, plain);
+  const Subject subject = event == Event::wound ? wound_of(scene, state) : press_of(scene, state);
+  if (subject.points.empty()) return std::optional<Camera>();
+  Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(kWidth, kHeight, subject.scene);
   if (!renderer) return renderer.errors();
-  const std::vector<Vec3> ways = directions(*scene.model, usual), points = framed(scene, walls, aspect);
+  const std::vector<Vec3> ways = directions(*scene.model, usual), points = framed(scene, subject.points, aspect);
   const Vec3 up = render::up_of(*scene.model);
   double best = 0;
   std::optional<Camera> found;
   for (const Vec3& way : ways) {
     const Camera whole = render::fitted_camera(scene, way, up, usual.fov_deg, double(kWidth) / kHeight);
     const double likeness = 0.5 + 0.5 * dot(way, ways.front());
-    const double score = visible_wound(**renderer, state, whole) * (1 - kUsualCounts * (1 - likeness));
+    const double score = visible(**renderer, subject, state, whole) * (1 - kUsualCounts * (1 - likeness));
     if (score > best)
       best = score, found = render::fit_camera(std::span<const Vec3>(points), way, up, usual.fov_deg, aspect);
   }

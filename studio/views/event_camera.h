@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+
+#include "core/model/result.h"
+#include "core/model/state.h"
+#include "studio/render/scene_view.h"
+
+namespace ctpm::views {
+
+/// What tools did to the tissue, as far as a State tells.
+enum class Event {
+  wound,  ///< all that was cut
+  press   ///< the tissue at the tools that are no blades, at State::last_inputs
+};
+
+/// A camera on an event: of directions around the organs the one from which most of it is visible, rather those near
+/// `usual`. It shows the event and what is around it. None if the State tells of no such event. Errors: no OpenGL 3.3.
+Result<std::optional<render::Camera>> event_camera(Event event, const render::SceneView& scene, const State& state,
+                                                   const render::Camera& usual, double aspect);
+
+}  // namespace ctpm::views
