@@ -45,7 +45,7 @@ void print_runs(const std::vector<stability::StabilityRow>& rows) {
     return (long long)counts[int(verdict)];
   };
   using enum reports::ReportVerdict;
-  print("%zu cases: auto holds %lld and fails %lld\n", rows.size(), of(automatic, met),
+  print("%zu case%s: auto holds %lld and fails %lld\n", rows.size(), rows.size() == 1 ? "" : "s", of(automatic, met),
         (long long)stability::count_failures(rows));
   print("integrators that are named: %lld runs hold, %lld were refused beforehand, %lld ran and failed\n",
         of(named, met), of(named, refused), of(named, missed));

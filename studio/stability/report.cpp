@@ -112,11 +112,12 @@ void conclude(reports::Report& report, const std::vector<StabilityRow>& rows) {
   points.push_back("Only shown: integrators that are named. Of their runs " + std::to_string(met) + " hold, " +
                    std::to_string(refused) + " are refused with the reason, " + std::to_string(missed) +
                    " do not hold" + (missed > 0 ? " and are drawn below." : "."));
-  report.conclude(failed == 0 ? reports::ReportVerdict::met : reports::ReportVerdict::missed,
-                  failed == 0
-                      ? "auto holds all " + std::to_string(rows.size()) + " cases."
-                      : "auto fails " + std::to_string(failed) + " of " + std::to_string(rows.size()) + " cases.",
-                  points);
+  report.conclude(
+      failed == 0 ? reports::ReportVerdict::met : reports::ReportVerdict::missed,
+      failed == 0
+          ? rows.size() == 1 ? "auto holds the one case." : "auto holds all " + std::to_string(rows.size()) + " cases."
+          : "auto fails " + std::to_string(failed) + " of " + std::to_string(rows.size()) + " cases.",
+      points);
   std::vector<double> shares;
   for (const StabilityRow& row : rows) shares.push_back(row.runs[0].reach / row.what->reach);
   report.add_plots({reports::plot_of_bounds("Under auto, of the way that spheres may go, this much is gone", shares)});

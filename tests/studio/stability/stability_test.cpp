@@ -133,6 +133,14 @@ TEST(StabilityCommand, WritesAReportOfTheCasesThatAreAskedFor) {
   EXPECT_NE(slurp(folder.path() / "out/results.json").find("\"failures_under_auto\": 0"), std::string::npos);
 }
 
+TEST(StabilityCommand, SpeaksOfOneCaseAsOne) {
+  const TemporaryFolder folder;
+  const ProgramOutcome outcome = run_ctpm({"stability", "-o", "out", "--quick", "--case", "single"}, folder.path());
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("1 case: auto holds 1 and fails 0"), std::string::npos) << outcome.out;
+  EXPECT_NE(slurp(folder.path() / "out/report.html").find("auto holds the one case."), std::string::npos);
+}
+
 TEST(StabilityCommand, NamesCasesThatDoNotExist) {
   const TemporaryFolder folder;
   const ProgramOutcome outcome =
