@@ -347,6 +347,27 @@ TEST_F(Reviewing, ADrawingIsWhatAVideoShows) {
   EXPECT_TRUE(client.call("session.draw", {{"stage", 2}, {"size", "320x180"}}).contains("errors"));
 }
 
+TEST_F(Reviewing, APressIsSeenFromWhereAFilmSeesIt) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  client.call("session.open", {{"path", kPress}, {"stage", 0}});
+  auto reader = recordings::SessionReader::open(file(kPress));
+  const session::TickRange whole{0, reader->tick_count()};
+  auto film = film::SessionFilm::create(*reader, whole, false);
+  const auto all = film::all_moments(*reader, whole);
+  ASSERT_TRUE(film && all);
+  const auto told = film::telling_state(*reader, whole, *all);
+  ASSERT_TRUE(told);
+  const render::SceneView view = views::view_of((*film)->scene(), (*film)->model());
+  const auto found = views::find_look({}, (*film)->scene(), view, 16.0 / 9, &*told);
+  ASSERT_TRUE(found);
+  for (int i = 0; i < 2; ++i) {
+    const nlohmann::json page = client.call("session.draw", {{"stage", 0}});
+    EXPECT_EQ(page["result"]["camera"]["name"], "press") << page;
+    EXPECT_EQ(page["result"]["camera"]["eye"][0], found->draw.camera.eye.x);
+  }
+}
+
 TEST_F(Reviewing, ADamagedSessionIsSaidSo) {
   const Serving serving(folder_.path());
   std::ofstream(folder_.path() / "broken.ctpm") << "this is no session";
