@@ -112,11 +112,11 @@ void conclude(reports::Report& report, const std::vector<StabilityRow>& rows) {
   points.push_back("Only shown: integrators that are named. Of their runs " + std::to_string(met) + " hold, " +
                    std::to_string(refused) + " are refused with the reason, " + std::to_string(missed) +
                    " do not hold" + (missed > 0 ? " and are drawn below." : "."));
+  const std::string count = std::to_string(rows.size());
+  const std::string all = rows.size() == 1 ? "the one case" : "all " + count + " cases";
   report.conclude(
       failed == 0 ? reports::ReportVerdict::met : reports::ReportVerdict::missed,
-      failed == 0
-          ? rows.size() == 1 ? "auto holds the one case." : "auto holds all " + std::to_string(rows.size()) + " cases."
-          : "auto fails " + std::to_string(failed) + " of " + std::to_string(rows.size()) + " cases.",
+      failed == 0 ? "auto holds " + all + "." : "auto fails " + std::to_string(failed) + " of " + count + " cases.",
       points);
   std::vector<double> shares;
   for (const StabilityRow& row : rows) shares.push_back(row.runs[0].reach / row.what->reach);

@@ -16,6 +16,18 @@ namespace {
 
 constexpr double kAspect = 16.0 / 9;
 
+constexpr render::Colour kGrey{0.25, 0.25, 0.25}, kGreen{0, 0.9, 0};
+
+int green_pixels(const render::SceneView& scene, const State& state, const render::DrawOptions& options) {
+  auto renderer = render::Renderer::create(640, 360, scene);
+  EXPECT_TRUE(renderer);
+  const render::Frame frame = (*renderer)->draw(state, options);
+  int count = 0;
+  for (std::size_t i = 0; i < frame.rgb.size(); i += 3)
+    count += frame.rgb[i + 1] > frame.rgb[i] + 25 && frame.rgb[i + 1] > frame.rgb[i + 2] + 25;
+  return count;
+}
+
 /// The expert's cut, and what shows it: the wound in green, the organ in grey.
 class WoundCamera : public ::testing::Test {
  protected:
@@ -34,16 +46,9 @@ class WoundCamera : public ::testing::Test {
   }
 
   int green(const render::Camera& camera) {
-    render::SceneView plain{view_.model, {{"organ", {0.25, 0.25, 0.25}, {0, 0.9, 0}, 0, {}}}, {}};
-    auto renderer = render::Renderer::create(640, 360, plain);
-    EXPECT_TRUE(renderer);
     render::DrawOptions options;
     options.camera = camera, options.show_tool = false;
-    const render::Frame frame = (*renderer)->draw(cut_, options);
-    int count = 0;
-    for (std::size_t i = 0; i < frame.rgb.size(); i += 3)
-      count += frame.rgb[i + 1] > frame.rgb[i] + 25 && frame.rgb[i + 1] > frame.rgb[i + 2] + 25;
-    return count;
+    return green_pixels({view_.model, {{"organ", kGrey, kGreen, 0, {}}}, {}}, cut_, options);
   }
   views::Look look(const std::string& camera, const State* cut) {
     views::LookRequest request;
@@ -159,20 +164,14 @@ TEST_F(WoundCamera, IsTheSameEveryTimeAndTheScenesWhereNothingIsCut) {
   EXPECT_NE(to_string(none.errors()[0]).find("nothing is cut"), std::string::npos);
 }
 
-/// Pixels that show a place of the tissue, of which the spheres around `at` are green.
+/// Pixels that show the pressed place, of which the spheres are green.
 int pixels_of(const Model& model, const State& state, Vec3 at, const render::Camera& camera) {
-  render::SceneView plain{&model, {}, std::vector<render::Colour>(state.position.size(), {0.25, 0.25, 0.25})};
+  render::SceneView plain{&model, {}, std::vector<render::Colour>(state.position.size(), kGrey)};
   for (std::size_t i = 0; i < state.position.size(); ++i)
-    if (norm(state.position[i] - at) < 0.012) plain.sphere_colours[i] = {0, 0.9, 0};
-  auto renderer = render::Renderer::create(640, 360, plain);
-  EXPECT_TRUE(renderer);
+    if (norm(state.position[i] - at) < 0.012) plain.sphere_colours[i] = kGreen;
   render::DrawOptions options;
   options.camera = camera, options.view = render::View::spheres;
-  const render::Frame frame = (*renderer)->draw(state, options);
-  int count = 0;
-  for (std::size_t i = 0; i < frame.rgb.size(); i += 3)
-    count += frame.rgb[i + 1] > frame.rgb[i] + 25 && frame.rgb[i + 1] > frame.rgb[i + 2] + 25;
-  return count;
+  return green_pixels(plain, state, options);
 }
 
 TEST(PressCamera, SeesThePressedTissueOfEachSession) {
