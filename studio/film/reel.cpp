@@ -60,15 +60,15 @@ Result<State> telling_state(recordings::SessionReader& session, const session::T
   Result<recordings::Keyframe> late = session.keyframe_at_or_before(session.tick_count());
   if (!late) late = session.keyframe_at_or_before(part.to);
   if (!late) return late.errors();
-  if (late->state.swept.size() > 0) return std::move(late->state);
   const auto deepest =
       std::find_if(all.begin(), all.end(), [](const Moment& m) { return m.kind == Moment::Kind::deepest; });
   if (deepest == all.end()) return std::move(late->state);
-  Result<recordings::Keyframe> before = session.keyframe_at_or_before(deepest->tick);
   const auto records = session.ticks(deepest->tick, deepest->tick + 1);
-  if (!before || !records) return std::move(late->state);  // damaged there
-  before->state.last_inputs = records->front().inputs;
-  return std::move(before->state);
+  if (!records) return std::move(late->state);  // damaged there
+  if (late->state.swept.size() == 0)
+    if (Result<recordings::Keyframe> before = session.keyframe_at_or_before(deepest->tick)) late = std::move(before);
+  late->state.last_inputs = records->front().inputs;
+  return std::move(late->state);
 }
 
 Result<Shot> Reel::shoot(std::int64_t frame) const {

@@ -47,8 +47,8 @@ struct Reel {
 std::optional<render::OverlayLevel> level_of(const std::string& name);
 
 /// The State that tells views::find_look() what happened in a session, so that a part is seen as the whole is: the last
-/// keyframe where something is cut; else the one before the deepest press of `all`, with the inputs of that tick. Of a
-/// session that is damaged there, the last keyframe up to the end of `part`. Errors: that is damaged, too.
+/// keyframe where something is cut, else the one before the deepest press of `all`; with the inputs of that press.
+/// Where the session is damaged there, the last keyframe up to the end of `part`. Errors: that is damaged, too.
 Result<State> telling_state(recordings::SessionReader& session, const session::TickRange& part,
                             const std::vector<Moment>& all);
 

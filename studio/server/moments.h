@@ -57,9 +57,6 @@ class Moments {
   /// session. Errors: the session cannot be read.
   Result<Moment> read(const Place& place, recordings::SessionReader& reader);
 
-  /// The State of the last keyframe, of which the cut is the longest; null: it is damaged.
-  const State* last() const { return last_ ? &*last_ : nullptr; }
-
   /// Takes the State before `tick`, to which a replay came that began at a kept State, if one is missing there.
   void keep(std::int64_t tick, const State& state, bool is_same);
 
@@ -87,7 +84,7 @@ class Moments {
 
   recordings::SessionReader reader_;
   std::vector<std::int64_t> keyframes_;  ///< ticks; interval i is from the i-th to the next or the end
-  std::optional<State> last_;            ///< see last()
+  std::optional<State> last_;            ///< of the last keyframe, of which the cut is the longest; none: damaged
   bool keeps_keyframes_ = false;         ///< there is memory for all of them
   std::int64_t spacing_ = kSpacing;
   mutable std::mutex mutex_;

@@ -70,7 +70,6 @@ Result<double> Stage::full_scale(render::ElementQuantity quantity) {
 
 /// See film::telling_state(). Null: the session is damaged.
 const State* Stage::told() {
-  if (const State* last = moments_->last(); !last || last->swept.size() > 0) return last;
   const std::lock_guard lock(told_mutex_);
   if (!told_) {
     Result<recordings::SessionReader> reader = recordings::SessionReader::open(reader_.path());  // of this thread

@@ -79,7 +79,7 @@ class Stage {
   bool is_plan_new_ = false;                               ///< the replay does not follow it yet
   std::map<render::ElementQuantity, double> full_scales_;  ///< of a film of this session alone
   std::mutex told_mutex_;
-  std::unique_ptr<const State> told_;  ///< of a session without a cut, once it was asked for
+  std::unique_ptr<const State> told_;  ///< once it was asked for
   bool ends_ = false;
   std::thread replay_thread_, glimpse_thread_;
 };

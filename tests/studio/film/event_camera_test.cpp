@@ -201,6 +201,17 @@ TEST(PressCamera, SeesThePressedTissueOfEachSession) {
   }
 }
 
+TEST_F(WoundCamera, ASessionThatIsCutTellsOfItsPressToo) {
+  const session::TickRange whole{0, reader_->tick_count()};
+  const std::int64_t pressed = 700;
+  const auto told = film::telling_state(*reader_, whole, {{pressed, "deepest press", film::Moment::Kind::deepest}});
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->swept.size(), cut_.swept.size());
+  const auto records = reader_->ticks(pressed, pressed + 1);
+  ASSERT_TRUE(records);
+  EXPECT_EQ(told->last_inputs, records->front().inputs);
+}
+
 TEST_F(WoundCamera, IsTheOneOfASessionThatIsCutAndPressed) {
   State pressed = cut_;
   const auto& tools = reader_->start().model.tools;
