@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 
+#include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
 
 namespace ctpm::compare {
@@ -37,6 +39,28 @@ Result<MatchedMoments> at_event(recordings::SessionReader& a, recordings::Sessio
   }
   if (!errors.empty()) return errors;
   return moments;
+}
+
+/// In step, the second session `ahead_s` ahead of the first, for as long as both last. Error: they are never seen
+/// together.
+Result<MatchedMoments> shifted(const recordings::SessionReader& a, const recordings::SessionReader& b, double ahead_s) {
+  const auto length = [](const recordings::SessionReader& session) {
+    return double(session.tick_count()) * session.start().model.tick;
+  };
+  const double from = std::max(0.0, -ahead_s), to = std::min(length(a), length(b) - ahead_s);
+  if (!(from < to))
+    return Error{output::option_name("export.align"),
+                 "got " + output::fixed(ahead_s, 3) + " s, and the sessions have no moment in common",
+                 "give more than " + output::fixed(-length(a), 3) + " and less than " + output::fixed(length(b), 3)};
+  return MatchedMoments{{from, from + ahead_s}, {to, to + ahead_s}};
+}
+
+/// The number that a text is. None: it is not one.
+std::optional<double> number_in(const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != 0 || !std::isfinite(number)) return std::nullopt;
+  return number;
 }
 
 Result<MatchedMoments> on_the_way(recordings::SessionReader& a, recordings::SessionReader& b) {
@@ -124,8 +148,10 @@ Result<MatchedMoments> match_sessions(recordings::SessionReader& a, recordings::
   if (by == "path") return on_the_way(a, b);
   if (by == "contact") return at_event(a, b, EventKind::contact_begins, "contact");
   if (by == "cut") return at_event(a, b, EventKind::cut, "cut");
+  if (const std::optional<double> ahead_s = number_in(by)) return shifted(a, b, *ahead_s);
   if (!by.empty())
-    return Error{output::option_name("export.align"), "got '" + by + "', must be path, contact, cut or clock", ""};
+    return Error{output::option_name("export.align"),
+                 "got '" + by + "', must be path, contact, cut, clock or the seconds that the second is ahead", ""};
   if (Result<MatchedMoments> found = on_the_way(a, b)) return found;
   if (Result<MatchedMoments> found = at_event(a, b, EventKind::contact_begins, "contact")) return found;
   return MatchedMoments{};

@@ -26,6 +26,7 @@ const kOverlays: [string, string][] = [["full", "full"], ["small", "small"], ["n
 const kAligned: [string, string][] = [["", "path, else first contact"], ["path", "path of the tool"], ["contact", "first contact"], ["cut", "first cut"], ["clock", "clock"]];
 /** How the command brings both together as they are seen here. */
 const kSeen: Record<string, string> = { path: "path", "contact begins": "contact", cut: "cut" };
+const seenAlign = (player: Player) => kSeen[player.aligned] ?? (player.offset === 0 ? "" : String(Number(player.offset.toFixed(6))));
 const kSlow: [string, string][] = [["cut", "cuts"], ["damage", "damage"], ["worst", "largest force and depth"]];
 
 /** A video of what is seen. */
@@ -35,13 +36,16 @@ export function ExportForm({ connection, player, look }: { connection: Connectio
   const [output, setOutput] = useState(() => session.path.replace(/\.ctpm$/, "") + ".mp4");
   const [from, setFrom] = useState("0"), [to, setTo] = useState("");
   const [speed, setSpeed] = useState("1"), [fps, setFps] = useState("30");
-  const [size, setSize] = useState(kSizes[0]), [overlay, setOverlay] = useState("full"), [align, setAlign] = useState(() => kSeen[player.aligned] ?? "");
+  const [size, setSize] = useState(kSizes[0]), [overlay, setOverlay] = useState("full"), [chosenAlign, setAlign] = useState<string | null>(null);
   const [slow, setSlow] = useState<string[]>([]), [isDifferentShown, showDifferent] = useState(false);
   const [progress, setProgress] = useState<[number, number] | null>(null);
   const [result, setResult] = useState<Exported | null>(null);
   const [error, setError] = useState<Error | null>(null);
   const stop = useRef<AbortController | null>(null);
 
+  const align = chosenAlign ?? seenAlign(player);
+  const byHand = [align, seenAlign(player)].find((key) => !kAligned.some(([known]) => known === key));
+  const aligned: [string, string][] = byHand === undefined ? kAligned : [...kAligned, [byHand, `by hand: ahead by ${byHand} s`]];
   const slowAt = beside ? "" : slow.join(",");
   const start = async () => {
     stop.current = new AbortController();
@@ -97,7 +101,7 @@ export function ExportForm({ connection, player, look }: { connection: Connectio
         {field("times real speed", speed, setSpeed, "number")}
         {field("pictures a second", fps, setFps, "number")}
       </div>
-      {beside ? choice("bring both together by", align, setAlign, kAligned) : (
+      {beside ? choice("bring both together by", align, setAlign, aligned) : (
         <fieldset>
           <legend>four times slower at</legend>
           {kSlow.map(([key, name]) => tick(name, slow.includes(key), (on) => setSlow(kSlow.map(([k]) => k).filter((k) => (k === key ? on : slow.includes(k))))))}

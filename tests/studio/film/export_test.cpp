@@ -34,6 +34,15 @@ std::string value_of(const std::string& json, const std::string& key) {
   return json.substr(begin, json.find_first_of(",\n", begin) - begin);
 }
 
+/// The left (0) or right (1) half of a picture.
+render::Frame half_of(const render::Frame& whole, int half) {
+  const int width = whole.width / 2;
+  render::Frame part = render::blank_frame(width, whole.height, 0, 0, 0);
+  for (int y = 0; y < whole.height; ++y)
+    std::copy_n(whole.rgb.begin() + 3 * (y * whole.width + width * half), 3 * width, part.rgb.begin() + 3 * y * width);
+  return part;
+}
+
 /// A short session of the shipped skin: the ball comes down and presses.
 class Export : public ::testing::Test {
  protected:
@@ -218,10 +227,7 @@ TEST_F(Export, BesideSaysThatASessionHasEnded) {
                               "--to-s", "0.8", "--speed", "3", "--align", "clock"},
                              folder_.path());
   ASSERT_EQ(both.code, 0) << both.err;
-  render::Frame half = picture("both", 3);  // 0.8 s
-  for (int y = 0; y < 720; ++y)
-    std::copy_n(half.rgb.begin() + (y * 1280 + 640) * 3, 640 * 3, half.rgb.begin() + y * 640 * 3);
-  half.width = 640, half.rgb.resize(std::size_t(640 * 720 * 3));
+  const render::Frame half = half_of(picture("both", 3), 1);  // at 0.8 s
   const render_test::GlyphReader reader(640, 720);
   EXPECT_EQ(reader.read_after(half, "ended"), "0.600 s");
   EXPECT_EQ(reader.read_after(half, "time"), "");
@@ -253,6 +259,29 @@ TEST_F(Export, BesideShowsTwoSessionsInStep) {
   EXPECT_TRUE(holds(json, "\"last_tick\": 1200") && holds(json, "\"last_tick\": 600")) << json;
 }
 
+TEST_F(Export, BesideKeepsTheSecondsThatItIsAheadByHand) {
+  record("short.ctpm", "0.6");
+  const auto export_ahead = [&](const char* seconds) {
+    return run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--fps", "20", "--align", seconds,
+                     "--from-s", "0.3", "--to-s", "0.4"},
+                    folder_.path());
+  };
+  for (const auto& [seconds, second] : {std::pair{"0.15", 0.55}, {"-0.25", 0.15}}) {
+    const auto both = export_ahead(seconds);
+    ASSERT_EQ(both.code, 0) << both.err;
+    const render::Frame last = picture("both", 2);
+    const render_test::GlyphReader reader(640, 720);
+    for (int half = 0; half < 2; ++half) {
+      const render::Frame part = half_of(last, half);
+      EXPECT_NEAR(std::atof(reader.read_after(part, "time").c_str()), half == 0 ? 0.4 : second, 1.1e-3) << seconds;
+    }
+    fs::remove_all(folder_.path() / "both");
+  }
+  const auto apart = export_ahead("0.6");
+  EXPECT_EQ(apart.code, 2);
+  EXPECT_TRUE(holds(apart.err, "--align: error: got 0.600 s, and the sessions have no moment in common")) << apart.err;
+}
+
 TEST_F(Export, BesideBringsTogetherWhatHappens) {
   const std::string shipped = std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/kidney-cut-";
   const auto both = run_ctpm({"export", shipped + "expert.ctpm", "-o", "both/", "--beside", shipped + "clumsy.ctpm",
@@ -264,9 +293,7 @@ TEST_F(Export, BesideBringsTogetherWhatHappens) {
   const render_test::GlyphReader reader(640, 720);
   const char* names[] = {"expert.ctpm", "clumsy.ctpm"};
   for (int half = 0; half < 2; ++half) {
-    render::Frame part = render::blank_frame(640, 720, 0, 0, 0);
-    for (int y = 0; y < 720; ++y)
-      std::copy_n(last.rgb.begin() + (y * 1280 + 640 * half) * 3, 640 * 3, part.rgb.begin() + y * 640 * 3);
+    const render::Frame part = half_of(last, half);
     auto session = recordings::SessionReader::open(shipped + names[half]);
     ASSERT_TRUE(session);
     const auto events = session->events();
@@ -278,7 +305,8 @@ TEST_F(Export, BesideBringsTogetherWhatHappens) {
   const auto wrong =
       run_ctpm({"export", "press.ctpm", "-o", "a.mp4", "--beside", "press.ctpm", "--align", "time"}, folder_.path());
   EXPECT_EQ(wrong.code, 2);
-  EXPECT_TRUE(holds(wrong.err, "--align: error: got 'time', must be path, contact, cut or clock")) << wrong.err;
+  EXPECT_TRUE(holds(wrong.err, "--align: error: got 'time', must be path, contact, cut, clock or the seconds"))
+      << wrong.err;
   const auto none =
       run_ctpm({"export", "press.ctpm", "-o", "a.mp4", "--beside", "press.ctpm", "--align", "cut"}, folder_.path());
   EXPECT_EQ(none.code, 2);
