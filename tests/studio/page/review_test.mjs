@@ -290,6 +290,16 @@ test("an export is the one that the shown command makes, and can be cancelled", 
   await page.click("#tab-export");
   assert.match(await page.locator("#panel .command code").innerText(), /--align contact/);
   assert.doesNotMatch(await page.locator("#panel .command code").innerText(), /--(overlay|slow-at|fps|size|speed|from-s|to-s)/);
+  // Aligned by hand, it says by how much.
+  await page.click("#tab-compare");
+  await page.locator("#panel input[type=number]").fill("-0.4");
+  await page.keyboard.press("Tab");
+  await page.click("#tab-export");
+  assert.match(await page.locator("#panel .command code").innerText(), /--align -0\.4( |$)/);
+  await field("file in the folder").fill("hand.avi");
+  await field("from [s]").fill("2.2");
+  await field("to [s]").fill("2.3");
+  await makesWhatItShows("hand", ["--align -0.4"]);
   await field("file in the folder").fill("both.avi");
   await field("from [s]").fill("2.2");
   await field("to [s]").fill("2.5");
@@ -313,7 +323,6 @@ test("an export is the one that the shown command makes, and can be cancelled", 
   await field("from [s]").fill("0");
   await field("to [s]").fill("");
   await page.click("#panel button.main");
-  await page.click("#panel .working button");
   await page.waitForSelector("#panel .problems");
   assert.ok(!existsSync(join(folder, "long.avi")));
 });
