@@ -323,6 +323,7 @@ test("an export is the one that the shown command makes, and can be cancelled", 
   await field("from [s]").fill("0");
   await field("to [s]").fill("");
   await page.click("#panel button.main");
+  await page.click("#panel .working button");
   await page.waitForSelector("#panel .problems");
   assert.ok(!existsSync(join(folder, "long.avi")));
 });
