@@ -117,9 +117,11 @@ Result<std::vector<FrameTicks>> by_knots(const Sessions& sessions, const std::ve
       const std::size_t next = next_knot(knots, time, film);
       return (own(knots[next]) - own(knots[next - 1])) / (knots[next].film - knots[next - 1].film);
     };
+    const double over = along(knots, length_of(*sessions[i]) * (1 - 1e-9), of(i), film);
+    const auto ended = std::int64_t(std::ceil((over - begin) / options.frame_s * (1 - 1e-9)));
     all.push_back({{tick_at(begin), tick_at(end)},
                    frames,
-                   frames,
+                   std::clamp<std::int64_t>(ended, 0, frames),
                    [=](std::int64_t frame) { return tick_at(time_of(frame)); },
                    [=](std::int64_t frame) { return share_at(time_of(frame)); }});
   }

@@ -55,6 +55,21 @@ TEST_F(Schedule, WhatHappensIsSeenTogether) {
   }
 }
 
+TEST_F(Schedule, ByHandTheOneThatIsOverFirstSaysSo) {
+  for (const char* word : {"2", "-2"}) {
+    const auto ticks = by(word);
+    std::size_t over = 0;
+    for (std::size_t half = 0; half < 2; ++half) {
+      const std::int64_t ended = ticks[half].ended, all = (half ? clumsy_ : expert_).tick_count();
+      EXPECT_EQ(ticks[half].tick(ended - 1), all) << word;
+      EXPECT_LT(ticks[half].tick(ended - 2), all) << word;
+      over += ended < ticks[half].frame_count;
+    }
+    EXPECT_EQ(over, 1u) << word;
+  }
+  for (const film::FrameTicks& ticks : by("path")) EXPECT_EQ(ticks.ended, ticks.frame_count);
+}
+
 TEST_F(Schedule, NothingIsLeftOutNothingIsHurriedAndNoHalfStandsStillForLong) {
   for (const char* word : {"path", "contact", "cut", ""}) {
     const auto ticks = by(word);
