@@ -18,10 +18,16 @@ Vec3 unit(Vec3 v) { return norm(v) > 0 ? v / norm(v) : Vec3{0, -1, 0}; }
 }  // namespace
 
 Result<Inset> Inset::create(Kind kind, const render::PictureSize& picture, const render::SceneView& scene) {
-  Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(
-      std::max(16, int(kShare * picture.width)), std::max(16, int(kShare * picture.height)), scene);
+  const render::PixelBox own = box(picture, 0);
+  Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(own.width, own.height, scene);
   if (!renderer) return renderer.errors();
   return Inset(kind, std::move(*renderer));
+}
+
+render::PixelBox Inset::box(const render::PictureSize& picture, int place) {
+  const int width = std::max(16, int(kShare * picture.width)), height = std::max(16, int(kShare * picture.height));
+  const int margin = std::max(4, picture.height / 60);
+  return {picture.width - width - margin, picture.height - (place + 1) * (height + margin), width, height};
 }
 
 void Inset::add(render::Frame& picture, int place, const State& state, render::DrawOptions draw,
@@ -45,15 +51,13 @@ void Inset::add(render::Frame& picture, int place, const State& state, render::D
         render::fitted_camera(scene, -front - 0.2 * up, up, kFieldOfView, double(picture.width) / picture.height);
   }
   const render::Frame small = renderer_->draw(state, draw);
-  const int margin = std::max(4, picture.height / 60);
-  const int left = picture.width - small.width - margin, top = picture.height - (place + 1) * (small.height + margin);
+  const auto [left, top, width, height] = box({picture.width, picture.height}, place);
   if (left < kFrame || top < kFrame) return;
-  for (int y = -kFrame; y < small.height + kFrame; ++y)
-    for (int x = -kFrame; x < small.width + kFrame; ++x) {
+  for (int y = -kFrame; y < height + kFrame; ++y)
+    for (int x = -kFrame; x < width + kFrame; ++x) {
       std::uint8_t* to = &picture.rgb[std::size_t((top + y) * picture.width + left + x) * 3];
-      const bool inside = x >= 0 && y >= 0 && x < small.width && y < small.height;
-      for (int c = 0; c < 3; ++c)
-        to[c] = inside ? small.rgb[std::size_t(y * small.width + x) * 3 + std::size_t(c)] : 225;
+      const bool inside = x >= 0 && y >= 0 && x < width && y < height;
+      for (int c = 0; c < 3; ++c) to[c] = inside ? small.rgb[std::size_t(y * width + x) * 3 + std::size_t(c)] : 225;
     }
 }
 

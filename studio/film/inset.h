@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/model/result.h"
+#include "studio/render/overlay.h"
 #include "studio/render/picture_size.h"
 #include "studio/render/renderer.h"
 
@@ -25,6 +26,9 @@ class Inset {
   /// the picture itself was drawn, `moments` the argument of following_camera().
   void add(render::Frame& picture, int place, const State& state, render::DrawOptions draw,
            const std::vector<Inputs>& moments);
+
+  /// Where add() draws it, without its frame.
+  static render::PixelBox box(const render::PictureSize& picture, int place);
 
  private:
   Inset(Kind kind, std::unique_ptr<render::Renderer> renderer) : kind_(kind), renderer_(std::move(renderer)) {}

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "studio/film/beside_panels.h"
 #include "studio/film/session_strip.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/render/element_values.h"
@@ -35,15 +36,53 @@ Result<double> range_of(recordings::SessionReader& session, render::ElementQuant
   return largest;
 }
 
+/// Whether that is how a scene of the same size and place is seen.
+bool is_of(const render::SceneView& view, const Seen& seen) {
+  const render::Bounds rest = render::rest_bounds(view);
+  return seen.rest.min == rest.min && seen.rest.max == rest.max;
+}
+
 /// As the first one is seen, if that is of the same scene.
 Result<views::Look> look_of(recordings::SessionReader& session, const SessionFilm& film, const render::SceneView& view,
                             const render::PictureSize& size, const ExportOptions& options,
                             const std::vector<Moment>& all, const std::optional<Seen>& first) {
-  const render::Bounds rest = render::rest_bounds(view);
-  if (first && first->rest.min == rest.min && first->rest.max == rest.max) return first->look;
+  if (first && is_of(view, *first)) return first->look;
   const Result<State> told = telling_state(session, film.range(), all);
   if (!told) return told.errors();
   return views::find_look(options.look, film.scene(), view, double(size.width) / size.height, &*told);
+}
+
+/// Points along the held tools at moments of the whole session [m]; fewer where it is damaged.
+std::vector<Vec3> places_of_tools(recordings::SessionReader& session) {
+  constexpr std::int64_t kMoments = 60;
+  constexpr int kAlong = 20;
+  constexpr double kApart = 5e-3;  // [m]
+  std::vector<Vec3> places;
+  for (std::int64_t i = 0; i < kMoments; ++i) {
+    const std::int64_t tick = i * session.tick_count() / kMoments;
+    const auto record = session.ticks(tick, tick + 1);
+    if (!record || record->empty()) continue;
+    for (std::size_t number = 0; number < kMostHands; ++number) {
+      const Hand& hand = record->front().inputs.hand(number);
+      for (int k = 0; hand.tool >= 0 && k < kAlong; ++k)
+        places.push_back(hand.position + rotate(hand.world_from_tool, {0, 0, k * kApart}));
+    }
+  }
+  return places;
+}
+
+/// Moves a camera that nobody placed so that the panels of this film hide little.
+void make_room(Reel& reel, recordings::SessionReader& session, const render::PictureSize& size) {
+  render::OverlayData data = reel.film->overlay();
+  data.level = reel.level;
+  data.history.push_back({});
+  data.hand.is_blade = true;  // it has the longest name of a depth
+  data.legend = render::legend_of(reel.film->model(), reel.look.draw);
+  std::vector<render::PixelBox> panels = reel.overlay->standing_panels(data);
+  for (std::size_t i = 0; i < reel.insets.size(); ++i) panels.push_back(Inset::box(size, int(i)));
+  if (panels.empty()) return;
+  reel.look.draw.camera = beside_panels(reel.look.draw.camera, size, panels,
+                                        {render::rest_points(reel.renderer->scene()), places_of_tools(session)});
 }
 
 }  // namespace
@@ -118,6 +157,8 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
   reel.ticks = std::move(ticks), reel.speed = options.speed;
   reel.shows_pace = options.speed != 1 || !options.matched.empty() || !options.slow_at.empty();
   reel.level = level_of(options.overlay).value_or(reel.level);
+  const bool is_as_first = first && is_of(reel.renderer->scene(), *first);
+  if (reel.look.is_found && !is_as_first) make_room(reel, session, {size.width, height});
   return reel;
 }
 

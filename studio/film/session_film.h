@@ -50,6 +50,9 @@ class SessionFilm {
   /// Tissue cells that are inside out in the last shot.
   std::int32_t cells_inside_out() const { return overlay_.inside_out; }
 
+  /// The overlay of the last shot; before the first, what is known of all.
+  const render::OverlayData& overlay() const { return overlay_; }
+
   const scenes::SceneSpec& scene() const { return scene_; }
   const Model& model() const { return reader_.start().model; }
   const recordings::SessionReader& reader() const { return reader_; }

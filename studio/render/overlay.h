@@ -68,6 +68,7 @@ double largest_force(const OverlayData& data);
 struct PixelBox {
   int x = 0, y = 0, width = 0, height = 0;
 
+  bool holds(const Pixel& p) const { return x <= p.x && p.x < x + width && y <= p.y && p.y < y + height; }
   bool overlaps(const PixelBox& o) const {
     return x < o.x + o.width && o.x < x + width && y < o.y + o.height && o.y < y + height;
   }
@@ -93,6 +94,9 @@ class Overlay {
 
   /// All texts of draw() and their rectangles, without drawing.
   std::vector<PlacedText> layout(const OverlayData& data);
+
+  /// The panels of draw() that are there whatever happens, without drawing: no warning and no caption.
+  std::vector<PixelBox> standing_panels(const OverlayData& data);
 
  private:
   struct Parts;

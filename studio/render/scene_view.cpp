@@ -18,16 +18,12 @@ OrganLook look_of(std::string_view organ_name) {
   return look;
 }
 
-namespace {
-
 std::vector<Vec3> rest_points(const SceneView& scene) {
   std::vector<Vec3> points;
   for (const Surface& surface : scene.model->surfaces)
     points.insert(points.end(), surface.vertex.begin(), surface.vertex.end());
   return points;
 }
-
-}  // namespace
 
 Bounds rest_bounds(const SceneView& scene) { return bounds_of(rest_points(scene)); }
 

@@ -56,6 +56,9 @@ struct SceneView {
   std::shared_ptr<std::vector<CutSurface>> cuts = nullptr;
 };
 
+/// The vertices of all surfaces at rest [m].
+std::vector<Vec3> rest_points(const SceneView& scene);
+
 /// The box around everything at rest [m].
 Bounds rest_bounds(const SceneView& scene);
 

@@ -213,7 +213,7 @@ void choose_camera(const std::string& name, const std::string& cutaway, const sc
   const bool is_event = (name == "wound" || name == "press") && !is_the_scenes;
   look.camera = name, look.follows = name == "follow" && !is_the_scenes;
   if (is_fitted) {
-    look.draw.camera = render::default_camera(view, aspect);
+    look.draw.camera = render::default_camera(view, aspect), look.is_found = true;
     return;
   }
   if (is_of_places(name) && !is_the_scenes) {
@@ -226,10 +226,12 @@ void choose_camera(const std::string& name, const std::string& cutaway, const sc
   const Result<render::Camera> usual = find_camera(scene, view, is_free ? "" : name, aspect);
   if (!usual) return add(usual.errors());
   look.draw.camera = *usual;
-  if (name.empty()) look.camera = scene.cameras.empty() ? "fitted" : scene.cameras.front().name;
+  if (name.empty())
+    look.is_found = scene.cameras.empty(), look.camera = look.is_found ? "fitted" : scene.cameras.front().name;
   if (!is_free) return;
   if (name.empty() && is_axis(cutaway)) {
     look.draw.camera = section_camera(view, cutaway[0], *usual, aspect), look.camera = "section";
+    look.is_found = true;
     return;
   }
   const Result<std::optional<NamedCamera>> found = find_event(is_event ? name : "", view, aspect, *usual, told);
@@ -243,7 +245,7 @@ void choose_camera(const std::string& name, const std::string& cutaway, const sc
     camera.eye += near.target - camera.target, camera.target = near.target;
     return;
   }
-  look.draw.camera = near, look.camera = (*found)->name;
+  look.draw.camera = near, look.camera = (*found)->name, look.is_found = true;
 }
 
 }  // namespace

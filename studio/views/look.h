@@ -26,6 +26,7 @@ struct LookRequest {
 struct Look {
   render::DrawOptions draw;  ///< with the base camera
   bool follows = false;      ///< the camera follows the tool
+  bool is_found = false;     ///< the camera stands where it sees best, not where somebody placed it
   std::string camera;        ///< its name: a camera of the scene, `fitted`, `section`, `wound`, `press` or `follow`
 
   /// The options for one moment of the scene. `moments`: see following_camera().

@@ -103,7 +103,7 @@ TEST_F(MoreExports, TheStripShowsWhereInTheSessionThePictureIs) {
 
 TEST_F(MoreExports, InsetsShowTheToolFromNearAndTheTissueOpenedAtIt) {
   for (const char* inset : {"", "near", "section", "near,section"}) {
-    std::vector<std::string> options{"--at-s", "2.5", "--overlay", "none"};
+    std::vector<std::string> options{"--at-s", "2.5", "--overlay", "none", "--camera", "front"};
     if (*inset) options.insert(options.end(), {"--inset", inset});
     const auto shown = export_to(std::string("a") + inset + ".png", {kExpert}, options);
     ASSERT_EQ(shown.code, 0) << shown.err;
@@ -128,6 +128,20 @@ TEST_F(MoreExports, InsetsShowTheToolFromNearAndTheTissueOpenedAtIt) {
   const auto wrong = export_to("b.png", {kExpert}, {"--at-s", "1", "--inset", "far"});
   EXPECT_EQ(wrong.code, 2);
   EXPECT_TRUE(holds(wrong.err, "--inset: error: got 'far', must be near or section")) << wrong.err;
+}
+
+TEST_F(MoreExports, ACameraMakesRoomForPanelsUnlessSomebodyPlacedIt) {
+  const auto middle_of = [&](const char* camera, const char* overlay) {
+    std::vector<std::string> options{"--at-s", "2.5", "--overlay", overlay};
+    if (*camera) options.insert(options.end(), {"--camera", camera});
+    const std::string file = std::string("room") + camera + overlay + ".png";
+    EXPECT_EQ(export_to(file, {kExpert}, options).code, 0);
+    const render::Frame frame = picture(file);
+    return std::vector<std::uint8_t>(frame.rgb.begin() + 120 * 480 * 3 + 200 * 3,
+                                     frame.rgb.begin() + 120 * 480 * 3 + 300 * 3);
+  };
+  EXPECT_EQ(middle_of("front", "none"), middle_of("front", "full"));
+  EXPECT_NE(middle_of("", "none"), middle_of("", "full"));
 }
 
 TEST_F(MoreExports, APictureOfAMomentIsThatOfTheFilm) {
