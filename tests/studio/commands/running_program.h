@@ -34,15 +34,27 @@ class RunningProgram {
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
 
-  /// What follows `text` on its line of stderr, once it is there; empty after 30 s.
-  std::string wait_for(const std::string& text) {
+  /// False: `is_there()` did not become true within 30 s.
+  template <typename IsThere>
+  bool wait_until(const IsThere& is_there) const {
     for (int i = 0; i < 3000; ++i) {
-      const std::string said = slurp(folder_ / ".stderr");
-      if (const std::size_t at = said.find(text); at != std::string::npos && said.find('\n', at) != std::string::npos)
-        return said.substr(at + text.size(), said.find('\n', at) - at - text.size());
+      if (is_there()) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
-    return "";
+    return false;
+  }
+
+  /// What follows `text` on its line of stderr, once it is there; empty after 30 s.
+  std::string wait_for(const std::string& text) const {
+    std::string rest;
+    wait_until([&] {
+      const std::string said = slurp(folder_ / ".stderr");
+      const std::size_t at = said.find(text), end = said.find('\n', at);
+      if (at == std::string::npos || end == std::string::npos) return false;
+      rest = said.substr(at + text.size(), end - at - text.size());
+      return true;
+    });
+    return rest;
   }
 
   pid_t process() const { return child_; }

@@ -13,7 +13,7 @@
 #include "recordings/session_reader.h"
 #include "recordings/session_writer.h"
 #include "studio/render/frame.h"
-#include "tests/studio/commands/run_program.h"
+#include "tests/studio/commands/running_program.h"
 #include "tests/studio/render/glyph_reader.h"
 
 namespace ctpm {
@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::run;
 using testing::run_ctpm;
+using testing::RunningProgram;
 using testing::TemporaryFolder;
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -212,9 +213,10 @@ TEST_F(Export, AMissingCodecIsReplacedAndThatIsSaidAloud) {
 
 TEST_F(Export, CtrlCLeavesNothingBehind) {
   for (const char* output : {"a.mp4", "frames/"}) {
-    const auto stopped = run({"timeout", "--preserve-status", "-s", "INT", "1", CTPM_PROGRAM, "export", "press.ctpm",
-                              "-o", output, "--speed", "0.002"},
-                             folder_.path());
+    RunningProgram exporting({"export", "press.ctpm", "-o", output, "--speed", "0.002"}, folder_.path());
+    ASSERT_TRUE(exporting.wait_until([&] { return holds(folder_.list(), ".part"); })) << "the video has begun";
+    exporting.interrupt();
+    const auto stopped = exporting.outcome();
     EXPECT_EQ(stopped.code, 2);
     EXPECT_TRUE(holds(stopped.err, "stopped before the end; no video was written")) << stopped.err;
     EXPECT_EQ(folder_.list(), "press.ctpm");
