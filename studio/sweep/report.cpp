@@ -63,10 +63,14 @@ class Page {
 
   bool varies(std::size_t measure) const { return spreads_[measure].most > spreads_[measure].least; }
 
+  /// What has more than one value; a seed that all share is not listed.
   std::string columns_text() const {
     std::string text;
-    for (const std::string& column : plan_.columns) text += (text.empty() ? "" : ", ") + column;
-    return text;
+    for (std::size_t k = 0; k < plan_.columns.size(); ++k)
+      if (std::any_of(plan_.tasks.begin(), plan_.tasks.end(),
+                      [&](const Task& task) { return task.shown[k] != plan_.tasks[0].shown[k]; }))
+        text += (text.empty() ? "" : ", ") + plan_.columns[k];
+    return text.empty() ? "nothing" : text;
   }
 
   /// What moves most with what varies; empty: nothing that is not likely by chance.
@@ -110,13 +114,15 @@ class Page {
     return relations;
   }
 
-  /// Means of a measure where a column has few values; empty where it has many.
+  /// Means of a measure where a column has few values, at least one of them several times; empty otherwise.
   std::map<double, std::vector<double>> by_value(const Relation& relation) const {
     std::map<double, std::vector<double>> groups;
     const std::vector<double> values = of_done(collection_.measured[relation.measure]);
     for (std::size_t i = 0; i < values.size(); ++i)
       if (std::isfinite(values[i])) groups[numbers_[relation.column][i]].push_back(values[i]);
-    if (groups.size() > kMostGroups) groups.clear();
+    const bool repeats =
+        std::any_of(groups.begin(), groups.end(), [](const auto& group) { return group.second.size() > 1; });
+    if (groups.size() > kMostGroups || !repeats) groups.clear();
     return groups;
   }
 
@@ -134,8 +140,12 @@ class Page {
     for (const auto& [x, group] : by_value(relation)) means.x.push_back(x), means.y.push_back(spread_of(group).mean);
     if (means.x.size() > 1) plot.series.push_back(std::move(means));
     const Spread range = spread_of(numbers_[relation.column]);
-    const double margin = 0.03 * (range.most - range.least);  // so that no mark is cut
-    plot.x_range = {range.least - margin, range.most + margin};
+    constexpr double kWide = 30;  // of most / least: on a linear axis most values would lie on its first tenth
+    plot.is_log_x = range.least > 0 && range.most > kWide * range.least;
+    if (!plot.is_log_x) {
+      const double margin = 0.03 * (range.most - range.least);  // so that no mark is cut
+      plot.x_range = {range.least - margin, range.most + margin};
+    }
     plot.caption = "rank correlation " + output::fixed(relation.correlation, 2) +
                    (stride > 1 ? "; one of " + std::to_string(stride) + " sessions is drawn" : "");
     return plot;
