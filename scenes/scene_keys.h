@@ -278,11 +278,13 @@ void describe_fields(V& v, ToolSpec& tool) {
       tool.blade_length, units::millimetre, within(0.01, 500));
   v.point(Key{"holds_mm", "A pin holds the sphere nearest to here; needed by a pin, not allowed for others."},
           tool.holds, units::millimetre, any_coordinate_mm);
-  v.number(Key{"blade_reach_mm",
-               "Radius of the tissue around a scalpel's edge that takes up its force; at least 1.5 spacings of the "
-               "organ are taken; not allowed for others.",
-               false, "15"},
-           tool.blade_reach, units::millimetre, within(0.01, 100));
+  v.number(
+      Key{"blade_reach_mm",
+          "Radius of the tissue around a scalpel's edge that takes up its force; at least 1.5 spacings of the "
+          "organ are taken, and 5.3 times the toughness over Young's modulus (at most 2.6 spacings); not allowed for "
+          "others.",
+          false, "15"},
+      tool.blade_reach, units::millimetre, within(0.01, 100));
   v.number(Key{"flank_height_mm",
                "Height of a scalpel's flanks behind the edge, along which cut faces rub; not allowed for others.",
                false, "6"},

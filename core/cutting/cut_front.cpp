@@ -158,8 +158,8 @@ void CutFront::begin_tick(const Tool& scalpel, const BladeEdge& from, const Blad
     const auto first = std::size_t(model_.organs[o].first), last = first + std::size_t(model_.organs[o].count);
     Box box(state.position[first]);
     for (std::size_t i = first; i < last; ++i) box.add(state.position[i]);
-    reach_[o] =
-        std::max(scalpel.blade_reach, std::max(scalpel.blade_reach_spacings, kLeastReach) * model_.organs[o].spacing);
+    reach_[o] = std::max({scalpel.blade_reach, model_.organs[o].blade_reach,
+                          std::max(scalpel.blade_reach_spacings, kLeastReach) * model_.organs[o].spacing});
     box_[o] = box.grown(std::max(kNear, 2 * apart));
     is_near = is_near || box_[o].meets(edge);
   }

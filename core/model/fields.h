@@ -100,6 +100,7 @@ void for_each_field(Organ_& o, Visit&& visit) {
   give("instant_ratio", o.instant_ratio, not_negative);
   give("kelvin_time", o.kelvin_time, time);
   give("meets_itself", o.meets_itself, any);
+  give("blade_reach", o.blade_reach, length_or_none);
 }
 
 template <class Obstacle_, class Visit>

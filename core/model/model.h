@@ -108,8 +108,9 @@ struct Tool {
   /// How far the front of a cut is behind the edge while it goes through tissue that resists [m], > 0. Default: our
   /// choice; what is pressed ahead of a sharp edge before it cuts.
   double trail_distance = 0.2e-3;
-  /// Radius of the tissue around the edge that takes up its force [m], > 0. Default: our choice. It must not shrink
-  /// with the lattice: soft, tough tissue would be crushed at the edge, and dragged along before it is cut.
+  /// Radius of the tissue around the edge that takes up its force [m], > 0; OrganRange::blade_reach where that is
+  /// larger. Default: our choice. It must not shrink with the lattice: soft, tough tissue would be crushed at the edge,
+  /// and dragged along before it is cut.
   double blade_reach = 15e-3;
   /// The same radius in spacings of the organ; the larger of the two applies [1], > 0. Default: all corners of the cell
   /// around the edge, and little more, so that the edge hardly follows the faces that gape behind it.
@@ -160,6 +161,9 @@ struct OrganRange {
   double modulus = 0;        ///< static Young's modulus [Pa], >= 0
   double instant_ratio = 1;  ///< stiffness at once over static stiffness, >= 1
   double kelvin_time = 0;    ///< viscosity over stiffness of the Kelvin unit [s], >= 0
+  /// Radius of the tissue around a blade's edge that must take up its force, so that the pull of the edge strains
+  /// tough, soft tissue little; see Tool::blade_reach [m], >= 0.
+  double blade_reach = 0;
   /// Whether parts of the organ's surface that lie apart touch each other (contact::BodyContact).
   bool meets_itself = false;
 };

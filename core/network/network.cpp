@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -360,6 +361,24 @@ void set_foundation(OrganRange& range, const FilledOrgan& organ, const OrganSett
   range.kelvin_time = s.kelvin_c / s.kelvin_k;
 }
 
+/// Strain to which the pull of a blade's edge may stretch the tissue that takes it up (our choice). An edge draws with
+/// its toughness J_c per length. Spread over the half cylinder ahead of it with radius rho, that is the stress
+/// J_c / (pi rho).
+constexpr double kEdgeStrain = 0.06;
+
+/// Radius around a blade's edge at which its pull strains no layer of the organ by more than kEdgeStrain [m].
+double blade_reach_of(const FilledOrgan& organ, const OrganSettings& settings) {
+  double reach = 0;
+  const auto add = [&](const Material& material) {
+    const double edge_k = slow_edge_k(settings.structure, stiffness_of(material, organ.spacing));
+    const double modulus = kYoungOverEdge * edge_k / organ.spacing;
+    reach = std::max(reach, material.fracture_toughness / (std::numbers::pi * kEdgeStrain * modulus));
+  };
+  add(settings.material);
+  for (const LayerMaterial& layer : settings.layers) add(layer.material);
+  return reach;
+}
+
 void add_spheres(Model& model, const FilledOrgan& organ, const OrganSettings& settings) {
   const std::size_t first = model.sphere_count();
   for (std::size_t i = 0; i < organ.centre.size(); ++i) {
@@ -378,6 +397,7 @@ void add_spheres(Model& model, const FilledOrgan& organ, const OrganSettings& se
   model.organs.push_back({settings.name, std::int32_t(first), std::int32_t(organ.centre.size()), organ.sphere_radius,
                           organ.spacing, settings.damage_depth, layers});
   set_foundation(model.organs.back(), organ, settings);
+  model.organs.back().blade_reach = blade_reach_of(organ, settings);
   // Organs that were added without a surface have an empty one.
   model.surfaces.resize(model.organs.size());
   model.surfaces.back() = organ.surface;
