@@ -101,6 +101,20 @@ class Strokes {
             },
             length};
   }
+  /// Goes into the tissue to where a stroke begins, as a hand does that cannot appear in it: by `from` [m] from
+  /// outside.
+  Stroke entered(Stroke stroke, Vec3 from) const {
+    const double way = norm(from), length = way + stroke.length;
+    const auto at = [=](double t) {
+      const double gone = t * length;
+      Inputs inputs = stroke.at(std::max(0.0, gone - way) / stroke.length);
+      inputs.position += std::max(0.0, 1 - gone / way) * from;
+      return inputs;
+    };
+    return {at, length};
+  }
+  Vec3 above(double bottom) const { return {0, 0, box_.high.z + kBeyond - bottom}; }
+
   /// An ellipse around the middle, closed and a little more, of a part of the box.
   Stroke ring(double size, double bottom) const {
     const auto at = [=, this](double t) {
@@ -109,9 +123,10 @@ class Strokes {
       return upright({middle_.x + size * half_.x * std::cos(a), middle_.y + size * half_.y * std::sin(a), bottom},
                      std::atan2(way.y, way.x));
     };
-    return {at, 2 * std::numbers::pi * size * std::max(half_.x, half_.y)};
+    return entered({at, 2 * std::numbers::pi * size * std::max(half_.x, half_.y)}, above(bottom));
   }
-  /// The blade lies level along x, its tip at `tip` [m] and its heel beyond the organ, and goes along y.
+  /// The blade lies level along x, its tip at `tip` [m] and its heel beyond the organ, and goes along y; through a part
+  /// of the organ, where it begins with a stab along its length.
   Stroke level(double z, double tip, double part) const {
     const double length = 2 * (part * half_.y + (part < 1 ? 0 : kBeyond));
     const auto at = [=, this](double t) {
@@ -120,7 +135,8 @@ class Strokes {
       inputs.world_from_tool = {0.5, -0.5, -0.5, 0.5};  // its edge towards -x, what it cuts towards y
       return inputs;
     };
-    return {at, length};
+    if (part >= 1) return {at, length};
+    return entered({at, length}, {box_.low.x - kBeyond - tip, 0, 0});
   }
 
   Box box_;
@@ -237,7 +253,8 @@ Chapter chapter_of(const StrokesResult& result) {
   section.paragraphs = {
       "The blades of the shipped scenes, made long enough, go through their organs at 40 mm/s: on a straight line half "
       "of the organ's height deep, on an S, on a closed ellipse, on two lines that cross, with a tremor of 1 mm at "
-      "8 Hz; they take a cap off, a disc out, and cut strips of 1, 0.5 and 0.3 spacings. Every 25 ticks the drawn "
+      "8 Hz; they take a cap off, a disc out, and cut strips of 1, 0.5 and 0.3 spacings. They enter from outside: "
+      "for the ellipse from above, for the level cut below a disc by a stab. Every 25 ticks the drawn "
       "surface is looked "
       "at: it should be closed, with as many components as there are pieces, change only where the blade went on, and "
       "no triangle should be six times as long as at rest, or as a twentieth of a spacing where it is shorter. Places "

@@ -106,7 +106,7 @@ double depth_of(const Shipped& shipped, const Hand& inputs) {
 TEST(ShippedScripts, EachSceneHasOne) {
   std::vector<std::string> names;
   for (const Shipped& shipped : shipped_scripts()) names.push_back(scene_of(shipped.name));
-  for (const std::string scene : {"liver", "kidney", "skin", "incision", "two-organs", "two-hands"})
+  for (const std::string scene : {"liver", "kidney", "skin", "incision", "skin-incision", "two-organs", "two-hands"})
     EXPECT_NE(std::find(names.begin(), names.end(), scene), names.end()) << scene;
 }
 

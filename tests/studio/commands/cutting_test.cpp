@@ -112,6 +112,31 @@ TEST(CuttingSession, TellsTheForceAndThePieceThatComesLoose) {
   EXPECT_LT(most, 40);
 }
 
+TEST(CuttingSession, SkinUnderTensionGapesWhereItIsCut) {
+  const std::string shipped = std::string(CTPM_SOURCE_DIR) + "/scenes/";
+  const TemporaryFolder folder;
+  const auto recorded = run_ctpm({"record", shipped + "skin-incision.json", "--script",
+                                  shipped + "scripts/skin-incision-cut.json", "-o", "cut.ctpm", "--fast"},
+                                 folder.path());
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  auto reader = recordings::SessionReader::open((folder.path() / "cut.ctpm").string());
+  ASSERT_TRUE(reader);
+  const auto before = reader->keyframe_at_or_before(0), after = reader->keyframe_at_or_before(1'000'000);
+  ASSERT_TRUE(before && after);
+  // The spheres of the skin beside the cut's middle.
+  const Model& model = reader->start().model;
+  const auto lip = [&](double y) {
+    std::size_t nearest = 0;
+    const auto off = [&](std::size_t i) { return norm(model.rest_position[i] - Vec3{0, y, 0.022}); };
+    for (std::size_t i = 0; i < model.sphere_count(); ++i)
+      if (off(i) < off(nearest)) nearest = i;
+    return nearest;
+  };
+  const auto apart = [&](const State& state) { return state.position[lip(7e-3)].y - state.position[lip(-7e-3)].y; };
+  EXPECT_GT(apart(after->state), apart(before->state) + 6e-3);
+  EXPECT_LT(apart(after->state), apart(before->state) + 12e-3) << "the fat below still holds it";
+}
+
 /// The shipped incision: under its tense capsule tissue slides sideways along the blade, and the cut lies within a
 /// third of a millimetre of a row of spheres.
 TEST(CuttingSession, SeversWhatTheBladeSweptAndLeavesNoSphereWithoutTissue) {
