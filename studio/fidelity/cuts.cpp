@@ -110,23 +110,21 @@ double farthest_wall(const cutbody::CutBody& body, const State& state) {
   return farthest;
 }
 
-Result<Model> load_organ(const std::string& path, double finer, double& radius) {
+}  // namespace
+
+Result<Model> load_organ(const std::string& path, double finer) {
   Result<loading::LoadedScene> loaded = loading::load_whole_scene(path, {}, [&](scenes::SceneSpec& scene) {
     scene.organs[0].fill.radius /= finer, scene.organs[0].fill.gap /= finer;
   });
   if (!loaded) return loaded.errors();
-  radius = loaded->scene.spec.organs[0].fill.radius;
   return std::move(loaded->built.model);
 }
-
-}  // namespace
 
 Result<CutsResult> measure_cuts(const std::string& shipped, bool is_quick) {
   CutsResult result;
   for (const char* organ : {"kidney", "skin", "liver"})
     for (const double finer : is_quick ? std::vector{1.0} : std::vector{1.0, 2.0}) {
-      double radius = 0;
-      const Result<Model> model = load_organ(shipped + "/" + organ + ".json", finer, radius);
+      const Result<Model> model = load_organ(shipped + "/" + organ + ".json", finer);
       if (!model) return model.errors();
       const std::vector<Vec3>& vertex = model->surfaces[0].vertex;
       Vec3 low = vertex[0], high = low;
@@ -138,7 +136,7 @@ Result<CutsResult> measure_cuts(const std::string& shipped, bool is_quick) {
       std::vector<CutsResult::Row> rows(ways.size());
       in_parallel(ways.size(), [&](std::size_t i) {
         CutsResult::Row& row = rows[i];
-        row.organ = organ, row.cut = ways[i].first, row.radius = radius;
+        row.organ = organ, row.cut = ways[i].first, row.radius = model->organs[0].sphere_radius;
         const State state = cut_along(*model, ways[i].second);
         cutbody::CutBody body(*model, 0);
         (void)body.update(state);

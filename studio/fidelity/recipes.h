@@ -150,6 +150,9 @@ struct BladeResult {
 Result<BladeResult> measure_blade(std::span<const double> radii, std::span<const double> toughnesses);
 Chapter chapter_of(const BladeResult& result);
 
+/// The Model of a shipped scene whose organ is filled with spheres `finer` times as small.
+Result<Model> load_organ(const std::string& path, double finer);
+
 /// Cuts of eleven kinds through the shipped kidney, skin and liver at rest.
 struct CutsResult {
   struct Row {
@@ -170,6 +173,7 @@ Chapter chapter_of(const CutsResult& result);
 struct StrokesResult {
   struct Row {
     std::string organ, stroke;
+    double radius = 0;             ///< [m]
     int severed = 0, refused = 0;  ///< elements; ticks
     int looks = 0;
     int wrong = 0;  ///< looks at which the drawn surface was open, or had other components than there were pieces
@@ -180,7 +184,8 @@ struct StrokesResult {
   };
   std::vector<Row> rows;
 };
-/// `shipped`: folder of the shipped scenes. `is_quick`: only the straight stroke.
+/// `shipped`: folder of the shipped scenes. `is_quick`: only the straight stroke, at their own filling; else all, also
+/// at half its radius.
 Result<StrokesResult> measure_strokes(const std::string& shipped, bool is_quick);
 Chapter chapter_of(const StrokesResult& result);
 
