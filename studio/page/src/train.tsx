@@ -271,6 +271,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
                   </select>
                 </label>
               )}
+              {trainer && trainer.ghostAway !== null && <Readings rows={[["from your tool", millimetres(trainer.ghostAway)]]} />}
             </Section>
             <label class="tick"><input type="checkbox" checked={sound.current.isOn} onChange={() => {
               sound.current.switch();

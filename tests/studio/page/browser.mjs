@@ -57,7 +57,7 @@ export async function openStudio(folder, port = 0, ...more) {
     executablePath: "/usr/bin/chromium", headless: true, viewport: { width: 1280, height: 720 }, args: kFlags,
     ignoreHTTPSErrors: more.includes("--behind"), // a certificate of the test's own
   });
-  context.setDefaultTimeout(150000);
+  context.setDefaultTimeout(Number(process.env.CTPM_WAIT ?? 150000));
   const page = context.pages()[0];
   const complaints = [];
   page.on("pageerror", (error) => complaints.push(error.message));
@@ -65,6 +65,10 @@ export async function openStudio(folder, port = 0, ...more) {
     if (message.type() === "error") complaints.push(message.text());
   });
   page.on("dialog", (dialog) => complaints.push(`dialog: ${dialog.message()}`));
+  let sent = null; // the hand that the page sent last
+  page.on("websocket", (socket) => socket.on("framesent", ({ payload }) => {
+    if (String(payload).startsWith('{"hand"')) sent = JSON.parse(String(payload)).hand;
+  }));
   await page.goto(address);
   await page.waitForSelector("header nav button");
   const close = async () => {
@@ -86,7 +90,16 @@ export async function openStudio(folder, port = 0, ...more) {
     ({ server, address } = await serve(folder, new URL(address).port));
     return address;
   };
-  return { page, address, complaints, close, kill, startAgain };
+  /** Calls the program beside the page, as a script would. */
+  const call = async (name, params) => {
+    const { origin, hash } = new URL(address);
+    const answer = await fetch(`${origin}/call`, {
+      method: "POST", body: JSON.stringify({ id: 1, call: name, params }),
+      headers: { "Content-Type": "application/json", Authorization: `Bearer ${new URLSearchParams(hash.slice(1)).get("token")}` },
+    });
+    return (await answer.json()).result;
+  };
+  return { page, address, complaints, close, kill, startAgain, call, hand: () => sent };
 }
 
 /** What axe-core finds that is serious. */
