@@ -243,7 +243,6 @@ test("along the path both tools are at the same place of it, and by hand as far 
       slider.dispatchEvent(new Event("input", { bubbles: true }));
     }, time);
     await page.waitForFunction((shown) => document.querySelector(".clock").textContent.startsWith(shown), time.toFixed(3));
-    await replayedQuiet();
     return (await page.locator(".captions b").allInnerTexts()).map((text) => Number(/([-\d.]+) s$/.exec(text)[1]));
   };
   assert.equal(await page.locator(".plots div[data-title='difference of force [N]']").count(), 1);
@@ -268,6 +267,7 @@ test("along the path both tools are at the same place of it, and by hand as far 
     const belong = path_s.filter(([here]) => here === moment).map(([, there]) => there), [here, there] = await scrubTo(moment);
     assert.ok(here === Number(moment.toFixed(3)) && there >= Math.min(...belong) - 1e-3 && there <= Math.max(...belong) + 1e-3, `${here}, ${there}: ${belong}`);
   }
+  await page.waitForTimeout(700); // until both are replayed
   await picture(page, "review-along-path");
   await page.locator("#panel input[type=number]").fill("0.25");
   await page.keyboard.press("Tab");
