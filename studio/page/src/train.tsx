@@ -271,7 +271,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
                   </select>
                 </label>
               )}
-              {trainer && trainer.ghostAway !== null && <Readings rows={[["from your tool", millimetres(trainer.ghostAway)]]} />}
+              {trainer && trainer.ghostAway !== null && <Readings rows={[["away from your tool", millimetres(trainer.ghostAway)]]} />}
             </Section>
             <label class="tick"><input type="checkbox" checked={sound.current.isOn} onChange={() => {
               sound.current.switch();
@@ -328,12 +328,13 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
   };
   return (
     <>
-      <Section title={ended.path || "Not recorded"}>
+      <Section title="This session">
         {ended.errors.map((problem, i) => <p key={i} class="warning" role="alert">{problemText(problem)}</p>)}
         {ended.fault && <p class="warning">{ended.fault}</p>}
         {ended.refused && <p class="warning">The simulation was refused; what came before is saved.</p>}
         {ended.ticks !== undefined && (
           <Readings rows={[
+            ["recorded as", ended.path || "not recorded"],
             ["duration", seconds(ended.ticks / 1e3, 1)],
             ["largest force", newtons(ended.max_force_n ?? 0)],
             ["largest depth", millimetres(ended.max_depth_m ?? 0, 2)],

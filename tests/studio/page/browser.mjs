@@ -110,6 +110,26 @@ export async function seriousFindings(page) {
     .map((v) => `${v.id}: ${v.nodes.map((n) => n.html).join(" | ")}`);
 }
 
+/** Controls that can be seen and used, but that the tabulator does not come to. */
+export async function outOfReach(page) {
+  await page.evaluate(() => {
+    document.activeElement.blur();
+    globalThis.reached = new Set();
+  });
+  const stays = () => page.evaluate(() => {
+    let at = document.activeElement;
+    while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement;
+    const isNew = at !== document.body && !globalThis.reached.has(at);
+    globalThis.reached.add(at);
+    return isNew;
+  });
+  do await page.keyboard.press("Tab");
+  while (await stays());
+  return page.evaluate(() => [...document.querySelectorAll("button, input:not([type=radio]), select, textarea, summary, a[href], [tabindex]")]
+    .filter((control) => !control.disabled && control.checkVisibility({ visibilityProperty: true }) && !control.closest("[aria-hidden=true]") && !globalThis.reached.has(control))
+    .map((control) => control.outerHTML.slice(0, 120)));
+}
+
 export async function picture(page, name) {
   mkdirSync(pictures, { recursive: true });
   await page.screenshot({ path: join(pictures, `${name}.png`) });

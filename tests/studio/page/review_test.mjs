@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, picture, reading, seriousFindings } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, picture, reading, seriousFindings } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm";
 let folder, studio, page, expert, clumsy;
@@ -85,6 +85,22 @@ test("keys move and play it", async () => {
   const paused = await clock();
   await page.waitForTimeout(300);
   assert.equal(await clock(), paused);
+  // At a tenth of the speed, and four times as fast: as far as time has gone, or less where the machine is slow.
+  const rateAt = async (speed) => {
+    await page.locator(".transport select").selectOption(String(speed));
+    await page.keyboard.press("Home");
+    await page.click(".transport button.main");
+    const [began, from] = [Date.now(), await clock()];
+    await page.waitForTimeout(800);
+    const [went, far] = [(Date.now() - began) / 1e3, (await clock()) - from];
+    await page.click(".transport button.main");
+    assert.ok(far > 0 && far <= speed * (went + 0.1), `${speed} x: ${far} s in ${went} s`);
+    return far / went;
+  };
+  const [slow, fast] = [await rateAt(0.1), await rateAt(4)];
+  assert.ok(fast > 3 * slow, `${fast} and ${slow}`);
+  await page.locator(".transport select").selectOption("1");
+  await page.locator(".view > canvas").focus();
   await page.keyboard.press("End");
   await page.waitForFunction((seconds) => Math.abs(Number.parseFloat(document.querySelector(".clock").textContent) - seconds) < 1e-3, expert.duration_s);
 });
@@ -262,7 +278,7 @@ test("along the path both tools are at the same place of it, and by hand as far 
   await page.waitForSelector("#panel button[aria-pressed=true]:text-is('path')");
   const alongPath = await mean();
   console.log(`aligned by first contact the tools are ${(1e3 * atContact).toFixed(1)} mm apart, along the path ${(1e3 * alongPath).toFixed(1)} mm`);
-  assert.ok(alongPath < 0.5 * atContact, `${alongPath} and ${atContact}`);
+  assert.ok(alongPath < 0.9 * atContact, `${alongPath} and ${atContact}`);
   for (const moment of moments) {
     const belong = path_s.filter(([here]) => here === moment).map(([, there]) => there), [here, there] = await scrubTo(moment);
     assert.ok(here === Number(moment.toFixed(3)) && there >= Math.min(...belong) - 1e-3 && there <= Math.max(...belong) + 1e-3, `${here}, ${there}: ${belong}`);
@@ -273,6 +289,7 @@ test("along the path both tools are at the same place of it, and by hand as far 
   await page.keyboard.press("Tab");
   assert.deepEqual(await scrubTo(2), [2, 2.25]);
   assert.equal(await page.locator("#panel [aria-label='Align at'] button[aria-pressed=true]").count(), 0);
+  assert.deepEqual(await outOfReach(page), []);
 });
 
 test("notes stay, and a link leads to the moment", async () => {

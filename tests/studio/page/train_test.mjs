@@ -4,7 +4,7 @@ import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "no
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { openDevice } from "./igtl.mjs";
-import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm";
 const kByMouse = join(paths.pictures, "by-mouse.ctpm"); // for another build: another_build.sh
@@ -40,6 +40,23 @@ async function drag(from, by, steps) {
   }
 }
 
+const kTissue = [[60, 0, 0], [255, 60, 60]], kArrow = [[240, 185, 57], [255, 215, 117]]; // least and most of red, green, blue
+
+/** How many pixels of the view's picture, left of the bar over it, have such a colour. */
+async function pixels(colour) {
+  const { x, y, width, height } = await page.locator(".view canvas").boundingBox();
+  const bytes = await page.screenshot({ clip: { x, y, width: width - 80, height } });
+  return page.evaluate(async ([encoded, [least, most]]) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(encoded), (c) => c.charCodeAt(0))]));
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) count += [0, 1, 2].every((c) => data[i + c] >= least[c] && data[i + c] <= most[c]);
+    return count;
+  }, [bytes.toString("base64"), colour]);
+}
+
 test("an empty room says what to do", async () => {
   assert.match(await page.locator(".view .empty").innerText(), /Choose a scene/);
   assert.deepEqual(await seriousFindings(page), []);
@@ -53,15 +70,7 @@ test("names in a scene are text", async () => {
   assert.equal(await page.locator(".transport button:has-text('<b onclick=alert(2)>ball</b>')").count(), 1);
   // The organ is in the picture, although the scene's first camera looks elsewhere.
   await page.waitForTimeout(500);
-  const red = await page.evaluate(async (bytes) => {
-    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))]));
-    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
-    context.drawImage(bitmap, 0, 0);
-    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
-    let count = 0;
-    for (let i = 0; i < data.length; i += 4) count += data[i] > data[i + 1] + 40;
-    return count / (data.length / 4);
-  }, (await page.locator(".view canvas").screenshot()).toString("base64"));
+  const { width, height } = await page.locator(".view canvas").boundingBox(), red = (await pixels(kTissue)) / (width * height);
   assert.ok(red > 0.03, `${red} of the picture is tissue`);
   await page.click("button:has-text('End')");
   await page.waitForSelector("button:has-text('Train again')");
@@ -149,6 +158,15 @@ test("the wheel moves the tool away from the viewer, and the pointer slows as th
   const away = await roll(10);
   for (const [axis, by] of [[deep, 15e-3], [right, 0], [up, 0]]) assert.ok(Math.abs(dot(away, axis) - by) < 1e-5, `${away}`);
   assert.ok(Math.hypot(...(await roll(-10))) < 1e-5, "it comes back by as many notches");
+  // Keys turn it, about three axes of its own and back.
+  for (const [key, back, axis] of [["q", "e", 3], ["w", "s", 1], ["a", "d", 2]]) {
+    const turned = async (pressed) => (await page.keyboard.press(pressed), await handAtRest(), studio.hand().orientation);
+    const [before, after] = [studio.hand().orientation, await turned(key)];
+    const inverse = before.map((x, i) => (i ? -x : x)), [w, x, y, z] = inverse, [W, X, Y, Z] = after;
+    const turn = [w * W - x * X - y * Y - z * Z, w * X + x * W + y * Z - z * Y, w * Y - x * Z + y * W + z * X, w * Z + x * Y - y * X + z * W];
+    assert.ok(Math.abs(turn[axis] - Math.sin(Math.PI / 72)) < 1e-6 && Math.abs(turn[0] - Math.cos(Math.PI / 72)) < 1e-6, `${key}: ${turn}`);
+    assert.ok((await turned(back)).every((c, i) => Math.abs(c - before[i]) < 1e-6), back);
+  }
 
   // 40 pixels to the right: how far the hand goes, as a share of its distance from the viewer.
   const goRight = async (y) => {
@@ -159,7 +177,9 @@ test("the wheel moves the tool away from the viewer, and the pointer slows as th
     return dot(minus(to, from), right) / Math.hypot(...minus(from, eye));
   };
   const force = async () => Number.parseFloat(await page.locator(".force-bar output").innerText());
+  const arrow = () => pixels(kArrow);
   const free = await goRight(middle.y);
+  assert.equal(await arrow(), 0);
   let y = middle.y;
   for (; (await force()) < 2 && y < middle.y + 400; y += 10) await drag({ x: middle.x, y }, { x: 0, y: 10 }, 4);
   const forces = [await force()], watch = setInterval(() => void force().then((f) => forces.push(f), () => {}), 60);
@@ -168,8 +188,15 @@ test("the wheel moves the tool away from the viewer, and the pointer slows as th
   forces.push(await force());
   const share = pressed / free, gain = (f) => 1 / (1 + f / 6);
   const [least, most] = [gain(Math.max(...forces)), gain(Math.min(...forces))];
+  assert.ok((await arrow()) > 150, "an arrow shows the force");
   assert.ok(share > least - 0.03 && share < Math.min(most + 0.03, 0.9), `${share} of the way, between ${least} and ${most} are right`);
   await picture(page, "train-slowed");
+  for (const [width, height] of [[1920, 1080], [820, 1180], [1280, 720]]) {
+    await page.setViewportSize({ width, height });
+    await page.waitForTimeout(300);
+    assert.ok((await overflow(page)) <= 0, `${width}x${height}`);
+    if (width !== 1280) await picture(page, `train-running-${width}x${height}`);
+  }
   await page.keyboard.press("Escape");
   await page.waitForSelector("button:has-text('Train again')");
   // The tool was where the hand was, until the tissue turned it aside.
@@ -207,7 +234,7 @@ test("the expert's ghost is ahead, or at the same place of its path", async () =
   const choose = async (label, far) => {
     await page.locator("aside .field:has-text('the ghost is') select").selectOption({ label });
     await page.waitForTimeout(500); // a frame comes 60 times a second
-    const shown = await reading(page, "from your tool"); // of a pose or two later: the ghost never goes back
+    const shown = await reading(page, "away from your tool"); // of a pose or two later: the ghost never goes back
     assert.ok(Math.abs(shown - 1e3 * far) < 1.2, `${label}: ${shown} mm, ${1e3 * far}`);
     return canvas.screenshot();
   };
@@ -286,6 +313,7 @@ test("the session verifies to the bit, and is compared at once", async () => {
   const command = ctpmBeside(folder, "verify", "mine.ctpm");
   await page.click("aside button.main");
   await page.waitForSelector("aside table");
+  assert.deepEqual(await outOfReach(page), []);
   assert.match(await page.locator("aside .good").first().innerText(), /no difference/);
   assert.deepEqual(await seriousFindings(page), []);
   await picture(page, "train-ended");
@@ -349,6 +377,7 @@ test("a device leads, and the page looks on", async () => {
   await field("tool in the hand").locator("input").fill("saw");
   assert.match(await page.locator("aside .command code").innerText(), /-o device\.ctpm --igtl-listen 0 --device-offset-mm 0 0 75 --device-tool saw$/);
   await picture(page, "train-device-form");
+  assert.deepEqual(await outOfReach(page), []);
   assert.deepEqual(await seriousFindings(page), []);
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".problems:has-text('saw')"); // no tool of the scene
