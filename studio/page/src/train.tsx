@@ -147,6 +147,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
   };
 
   const again = () => {
+    trainer?.clear();
     setOutput(freeName(listing));
     setPhase("choose");
     setEnded(null);
@@ -220,7 +221,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
                 ))}
               </div>
             )}
-            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}mouse: move · wheel: depth · Q E, W S, A D: turn · right button: look around · Esc: end</span>}
+            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}mouse or arrows: move · wheel or PgUp PgDn: depth · Q E, W S, A D: turn · right button: look around · Esc: end</span>}
             <output class="clock">{seconds(frame?.time ?? 0, 1)}</output>
           </div>
         )}
@@ -246,7 +247,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
                   const of = hands.length < 2 ? "" : i === 0 ? ", right" : ", left";
                   return [
                     [`force${of}`, newtons(Math.hypot(...hand.force))],
-                    [`depth${of}`, millimetres(hand.depth, 2)],
+                    [`depth${of}`, view?.tools[hand.tool]?.kind === "scalpel" ? "–" : millimetres(hand.depth, 2)], // a blade has none
                     [`touched${of}`, `${hand.contacts} points`],
                   ];
                 }),

@@ -104,10 +104,7 @@ export class Trainer {
   /** Loads a scene and takes the tools in the hands, unless a `device` leads. `text` is taken in place of its file's;
       `output` undefined: nothing is recorded. */
   async begin(scene: string, text: string | undefined, output: string | undefined, device: object | undefined, signal: AbortSignal): Promise<BegunTraining> {
-    this.release();
-    this.viewer.set(kTrainStage, null);
-    this.scene = null;
-    this.pending = [];
+    this.clear();
     const begun = await this.connection.call<BegunTraining>("train.begin",
       { scene, text, output, device, stage: kTrainStage, most_speed_m_per_s: kGuardSpeed }, { signal });
     this.awaited = begun.awaited;
@@ -124,6 +121,14 @@ export class Trainer {
     for (const message of this.pending.splice(0)) this.take(message);
     if (!this.awaited) this.takeUp();
     return begun;
+  }
+
+  /** Takes away what is shown of a session. */
+  clear(): void {
+    this.release();
+    this.viewer.set(kTrainStage, null);
+    this.scene = null, this.ghostAway = null;
+    this.pending = [];
   }
 
   /** Ends the session; what was recorded is saved before the call returns. */

@@ -9,8 +9,8 @@ import { largeMesh } from "./large_mesh.mjs";
 
 const kSeconds = 8, rounds = Number(process.argv[7] ?? 3);
 const folder = makeFolder("kidney.json");
-writeFileSync(join(folder, "egg.obj"), largeMesh(20000));
-const imported = ctpm(folder, "import", "egg.obj", "-o", "egg.json", "--radius-mm", "7", "--preset", "liver");
+writeFileSync(join(folder, "scan.obj"), largeMesh(20000));
+const imported = ctpm(folder, "import", "scan.obj", "-o", "egg.json", "--radius-mm", "7", "--organ", "liver");
 if (imported.code !== 0) throw new Error(imported.err);
 const studio = await openStudio(folder), { page } = studio;
 const browser = await page.context().newCDPSession(page);
@@ -33,7 +33,7 @@ async function lead(scene) {
   const { x, y, width, height } = await page.locator(".view canvas").boundingBox();
   const began = Date.now(), before = [await page.evaluate(() => globalThis.pictures), await busy()];
   for (let t = 0; t < kSeconds; t = (Date.now() - began) / 1e3)
-    await page.mouse.move(x + width * (0.5 + 0.06 * Math.sin(3 * t)), y + height * (0.1 + 0.15 * (1 - Math.cos(2 * t))));
+    await Promise.all([page.mouse.move(x + width * (0.5 + 0.06 * Math.sin(3 * t)), y + height * (0.1 + 0.15 * (1 - Math.cos(2 * t)))), page.waitForTimeout(8)]);
   const pictures = (await page.evaluate(() => globalThis.pictures)) - before[0], time = (await busy()) - before[1];
   await page.keyboard.press("Escape");
   await page.waitForSelector("button:has-text('Train again')");
