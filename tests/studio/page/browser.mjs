@@ -112,19 +112,17 @@ export async function seriousFindings(page) {
 
 /** Controls that can be seen and used, but that the tabulator does not come to. */
 export async function outOfReach(page) {
-  await page.evaluate(() => {
-    document.activeElement.blur();
-    globalThis.reached = new Set();
-  });
-  const stays = () => page.evaluate(() => {
+  await page.evaluate(() => (globalThis.reached = new Set()));
+  // Round once, over the end of the page.
+  const goesOn = () => page.evaluate(() => {
     let at = document.activeElement;
     while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement;
-    const isNew = at !== document.body && !globalThis.reached.has(at);
+    const isNew = at === document.body || !globalThis.reached.has(at);
     globalThis.reached.add(at);
     return isNew;
   });
   do await page.keyboard.press("Tab");
-  while (await stays());
+  while (await goesOn());
   return page.evaluate(() => [...document.querySelectorAll("button, input:not([type=radio]), select, textarea, summary, a[href], [tabindex]")]
     .filter((control) => !control.disabled && control.checkVisibility({ visibilityProperty: true }) && !control.closest("[aria-hidden=true]") && !globalThis.reached.has(control))
     .map((control) => control.outerHTML.slice(0, 120)));
