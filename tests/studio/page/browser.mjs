@@ -3,10 +3,10 @@ import { spawn, spawnSync } from "node:child_process";
 import { cpSync, mkdirSync, mkdtempSync, readdirSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 import { text } from "node:stream/consumers";
 
-const [program, source, packages, sessions, pictures] = process.argv.slice(2);
+const [program, source, packages, sessions, pictures] = process.argv.slice(2, 7).map((path) => resolve(path));
 export const paths = { program, source, packages, sessions, pictures };
 const require = createRequire(join(packages, "package.json"));
 const { chromium } = require("playwright-core");
@@ -112,19 +112,22 @@ export async function seriousFindings(page) {
 
 /** Controls that can be seen and used, but that the tabulator does not come to. */
 export async function outOfReach(page) {
-  await page.evaluate(() => (globalThis.reached = new Set()));
+  await page.evaluate(() => {
+    globalThis.reached = new Set();
+    globalThis.looks = (control) => `${control.tagName} ${control.getAttribute("aria-label")} ${control.textContent}`; // it may be made anew
+  });
   // Round once, over the end of the page.
   const goesOn = () => page.evaluate(() => {
     let at = document.activeElement;
     while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement;
     const isNew = at === document.body || !globalThis.reached.has(at);
-    globalThis.reached.add(at);
+    globalThis.reached.add(at).add(globalThis.looks(at));
     return isNew;
   });
   do await page.keyboard.press("Tab");
   while (await goesOn());
   return page.evaluate(() => [...document.querySelectorAll("button, input:not([type=radio]), select, textarea, summary, a[href], [tabindex]")]
-    .filter((control) => !control.disabled && control.checkVisibility({ visibilityProperty: true }) && !control.closest("[aria-hidden=true]") && !globalThis.reached.has(control))
+    .filter((control) => !control.disabled && control.checkVisibility({ visibilityProperty: true }) && !control.closest("[aria-hidden=true]") && !globalThis.reached.has(globalThis.looks(control)))
     .map((control) => control.outerHTML.slice(0, 120)));
 }
 
