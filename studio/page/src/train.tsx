@@ -221,8 +221,8 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
                 ))}
               </div>
             )}
-            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}mouse or arrows: move · wheel or PgUp PgDn: depth · Q E, W S, A D: turn · right button: look around · Esc: end</span>}
             <output class="clock">{seconds(frame?.time ?? 0, 1)}</output>
+            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}mouse, arrows: move · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · Esc: end</span>}
           </div>
         )}
       </div>
