@@ -1,5 +1,5 @@
 import type { ComponentChildren } from "preact";
-import { useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { CallFailed, problemText } from "./protocol";
 
 /** Numbers in a column, each with its unit. */
@@ -16,12 +16,14 @@ export function Readings({ rows }: { rows: [string, string][] }) {
   );
 }
 
-/** What went wrong, in the program's words. */
+/** What went wrong, in the program's words; it is brought into view. */
 export function Problems({ error }: { error: Error | null }) {
+  const box = useRef<HTMLDivElement>(null);
+  useEffect(() => box.current?.scrollIntoView({ block: "nearest" }), [error]);
   if (!error) return null;
   const lines = error instanceof CallFailed ? error.problems.map(problemText) : [error.message];
   return (
-    <div class="problems" role="alert">
+    <div ref={box} class="problems" role="alert">
       <ul>
         {lines.map((line, i) => (
           <li key={i}>{line}</li>

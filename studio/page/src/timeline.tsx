@@ -42,7 +42,7 @@ function mostIn(values: number[], duration: number, from: number, to: number): n
 function options(width: number, colours: string[]): uPlot.Options {
   const axis = { stroke: "#aab2bd", font: "11px ui-monospace, monospace", grid: { stroke: "#262b33", width: 1 }, ticks: { show: false } };
   return {
-    width, height: kHeight, legend: { show: false }, cursor: { show: false }, padding: [4, kRight, 2, 0],
+    width, height: kHeight, legend: { show: false }, cursor: { show: false }, padding: [7, kRight, 7, 0], // so that numbers of rows below each other stay apart
     scales: { x: { time: false }, y: { range: (_, least, most) => [Math.min(0, least), most > least ? most * 1.05 : 1] } },
     axes: [
       { ...axis, show: false },

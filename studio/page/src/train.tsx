@@ -147,6 +147,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
   };
 
   const again = () => {
+    trainer?.clear();
     setOutput(freeName(listing));
     setPhase("choose");
     setEnded(null);
@@ -220,8 +221,8 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
                 ))}
               </div>
             )}
-            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}mouse: move · wheel: depth · Q E, W S, A D: turn · right button: look around · Esc: end</span>}
             <output class="clock">{seconds(frame?.time ?? 0, 1)}</output>
+            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}mouse, arrows: move · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · Esc: end</span>}
           </div>
         )}
       </div>
@@ -246,7 +247,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
                   const of = hands.length < 2 ? "" : i === 0 ? ", right" : ", left";
                   return [
                     [`force${of}`, newtons(Math.hypot(...hand.force))],
-                    [`depth${of}`, millimetres(hand.depth, 2)],
+                    [`depth${of}`, view?.tools[hand.tool]?.kind === "scalpel" ? "–" : millimetres(hand.depth, 2)], // a blade has none
                     [`touched${of}`, `${hand.contacts} points`],
                   ];
                 }),
@@ -271,6 +272,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
                   </select>
                 </label>
               )}
+              {trainer && trainer.ghostAway !== null && <Readings rows={[["away from your tool", millimetres(trainer.ghostAway)]]} />}
             </Section>
             <label class="tick"><input type="checkbox" checked={sound.current.isOn} onChange={() => {
               sound.current.switch();
@@ -327,12 +329,13 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
   };
   return (
     <>
-      <Section title={ended.path || "Not recorded"}>
+      <Section title="This session">
         {ended.errors.map((problem, i) => <p key={i} class="warning" role="alert">{problemText(problem)}</p>)}
         {ended.fault && <p class="warning">{ended.fault}</p>}
         {ended.refused && <p class="warning">The simulation was refused; what came before is saved.</p>}
         {ended.ticks !== undefined && (
           <Readings rows={[
+            ["recorded as", ended.path || "not recorded"],
             ["duration", seconds(ended.ticks / 1e3, 1)],
             ["largest force", newtons(ended.max_force_n ?? 0)],
             ["largest depth", millimetres(ended.max_depth_m ?? 0, 2)],

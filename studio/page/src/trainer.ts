@@ -41,6 +41,7 @@ export class Trainer {
   poses = 0; // sent so far
   hasGamepad = false;
   ghostAhead = kGhostAhead; // of the place on the expert's path that the tool has reached [s]
+  ghostAway: number | null = null; // from the tool [m]; null: there is no ghost
   awaited = ""; // where the device is that leads; empty: the page leads
   onWaiting: (why: string) => void = () => {}; // the device has sent nothing of use
   onFrame: () => void = () => {};
@@ -103,10 +104,7 @@ export class Trainer {
   /** Loads a scene and takes the tools in the hands, unless a `device` leads. `text` is taken in place of its file's;
       `output` undefined: nothing is recorded. */
   async begin(scene: string, text: string | undefined, output: string | undefined, device: object | undefined, signal: AbortSignal): Promise<BegunTraining> {
-    this.release();
-    this.viewer.set(kTrainStage, null);
-    this.scene = null;
-    this.pending = [];
+    this.clear();
     const begun = await this.connection.call<BegunTraining>("train.begin",
       { scene, text, output, device, stage: kTrainStage, most_speed_m_per_s: kGuardSpeed }, { signal });
     this.awaited = begun.awaited;
@@ -125,6 +123,14 @@ export class Trainer {
     return begun;
   }
 
+  /** Takes away what is shown of a session. */
+  clear(): void {
+    this.release();
+    this.viewer.set(kTrainStage, null);
+    this.scene = null, this.ghostAway = null;
+    this.pending = [];
+  }
+
   /** Ends the session; what was recorded is saved before the call returns. */
   async end(): Promise<void> {
     this.release();
@@ -135,6 +141,7 @@ export class Trainer {
   setExpert(motion: Motion | null): void {
     this.motion = motion;
     this.reached = 0;
+    this.ghostAway = null;
     if (!motion) this.scene?.setGhost(null);
   }
 
@@ -303,14 +310,23 @@ export class Trainer {
     const end = Math.min(poses.length, this.reached + Math.ceil(kLookAhead / interval_s));
     let best = kNear;
     for (let i = this.reached; i < end; ++i) {
-      const away = Math.hypot(poses[i][1] - tool[0], poses[i][2] - tool[1], poses[i][3] - tool[2]);
+      const away = distance(poses[i], tool);
       if (poses[i][0] >= 0 && away < best) best = away, this.reached = i;
     }
     return poses[Math.min(poses.length - 1, this.reached + Math.round(this.ghostAhead / interval_s))] ?? null;
   }
 
   private showGhost(frame: Frame): void {
-    if (this.motion && this.scene) this.scene.setGhost(this.expertNear(frame.position));
+    if (this.motion && this.scene) {
+      const pose = this.expertNear(frame.position);
+      this.scene.setGhost(pose);
+      this.ghostAway = pose && pose[0] >= 0 ? distance(pose, frame.position) : null;
+    }
     this.onFrame();
   }
+}
+
+/** From a pose of an expert's motion to a place [m]. */
+function distance(pose: number[], [x, y, z]: Vector): number {
+  return Math.hypot(pose[1] - x, pose[2] - y, pose[3] - z);
 }

@@ -3,7 +3,8 @@ import assert from "node:assert/strict";
 import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings } from "./browser.mjs";
+import { largeMesh } from "./large_mesh.mjs";
+import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings } from "./browser.mjs";
 
 let folder, studio, page;
 
@@ -69,25 +70,6 @@ test("an empty room says what to do", async () => {
   await picture(page, "author-empty");
 });
 
-/** An egg of about that many triangles, as a scanner would write it [mm]. */
-function largeMesh(triangles) {
-  const rings = Math.round(Math.sqrt(triangles / 2)), lines = [];
-  const at = (ring, k) => (ring === 0 ? 1 : ring === rings ? 2 : 3 + (ring - 1) * rings + (k % rings));
-  lines.push("v 0 0 50", "v 0 0 -40");
-  for (let ring = 1; ring < rings; ++ring)
-    for (let k = 0; k < rings; ++k) {
-      const polar = (Math.PI * ring) / rings, turn = (2 * Math.PI * k) / rings;
-      lines.push(`v ${(60 * Math.sin(polar) * Math.cos(turn)).toFixed(4)} ${(45 * Math.sin(polar) * Math.sin(turn)).toFixed(4)} ${(5 + 45 * Math.cos(polar)).toFixed(4)}`);
-    }
-  for (let ring = 0; ring < rings; ++ring)
-    for (let k = 0; k < rings; ++k) {
-      const [a, b, c, d] = [at(ring, k), at(ring, k + 1), at(ring + 1, k), at(ring + 1, k + 1)];
-      if (ring > 0) lines.push(`f ${a} ${c} ${b}`);
-      if (ring < rings - 1) lines.push(`f ${b} ${c} ${d}`);
-    }
-  return Buffer.from(lines.join("\n") + "\n");
-}
-
 test("a mesh of 100,000 triangles is imported, and an import that is stopped leaves nothing", async () => {
   const started = Date.now();
   await page.setInputFiles(".pick input", { name: "large.obj", mimeType: "model/obj", buffer: largeMesh(100000) });
@@ -110,7 +92,13 @@ test("a hole that is too wide is told, and closed when its author says so", asyn
   const lines = readFileSync(join(paths.source, "scenes", "organs", "kidney.obj"), "utf8").trimEnd().split("\n");
   const x = lines.filter((line) => line.startsWith("v ")).map((line) => Number(line.split(/\s+/)[1])), least = Math.min(...x), most = Math.max(...x);
   const mesh = Buffer.from(lines.filter((line) => !line.startsWith("f ") || x[Number.parseInt(line.split(/\s+/)[1]) - 1] < most - 0.15 * (most - least)).join("\n") + "\n");
-  await page.setInputFiles(".pick input", { name: "holed.obj", mimeType: "model/obj", buffer: mesh });
+  // It is dropped onto the page.
+  const dropped = await page.evaluateHandle((text) => {
+    const data = new DataTransfer();
+    data.items.add(new File([text], "holed.obj"));
+    return data;
+  }, mesh.toString());
+  await page.dispatchEvent(".view canvas", "drop", { dataTransfer: dropped });
   await page.locator("aside label:has-text('radius') input").fill("5");
   await button("Import", "aside").click();
   await page.waitForSelector("aside .problems:has-text('wider than')");
@@ -237,6 +225,7 @@ test("a probe is dragged over the surface", async () => {
   await page.keyboard.press("ArrowUp");
   assert.notDeepEqual((await scene()).probes[0].at_mm, [3.5, moved[1], moved[2]]);
   assert.equal((await save()).probes.length, 1);
+  assert.deepEqual(await outOfReach(page), []);
 });
 
 test("200 nudges make 200 undo steps, and undoing all gives the text back", async () => {

@@ -3,10 +3,10 @@ import { spawn, spawnSync } from "node:child_process";
 import { cpSync, mkdirSync, mkdtempSync, readdirSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 import { text } from "node:stream/consumers";
 
-const [program, source, packages, sessions, pictures] = process.argv.slice(2);
+const [program, source, packages, sessions, pictures] = process.argv.slice(2, 7).map((path) => resolve(path));
 export const paths = { program, source, packages, sessions, pictures };
 const require = createRequire(join(packages, "package.json"));
 const { chromium } = require("playwright-core");
@@ -57,7 +57,7 @@ export async function openStudio(folder, port = 0, ...more) {
     executablePath: "/usr/bin/chromium", headless: true, viewport: { width: 1280, height: 720 }, args: kFlags,
     ignoreHTTPSErrors: more.includes("--behind"), // a certificate of the test's own
   });
-  context.setDefaultTimeout(150000);
+  context.setDefaultTimeout(Number(process.env.CTPM_WAIT ?? 150000));
   const page = context.pages()[0];
   const complaints = [];
   page.on("pageerror", (error) => complaints.push(error.message));
@@ -65,6 +65,10 @@ export async function openStudio(folder, port = 0, ...more) {
     if (message.type() === "error") complaints.push(message.text());
   });
   page.on("dialog", (dialog) => complaints.push(`dialog: ${dialog.message()}`));
+  let sent = null; // the hand that the page sent last
+  page.on("websocket", (socket) => socket.on("framesent", ({ payload }) => {
+    if (String(payload).startsWith('{"hand"')) sent = JSON.parse(String(payload)).hand;
+  }));
   await page.goto(address);
   await page.waitForSelector("header nav button");
   const close = async () => {
@@ -86,7 +90,16 @@ export async function openStudio(folder, port = 0, ...more) {
     ({ server, address } = await serve(folder, new URL(address).port));
     return address;
   };
-  return { page, address, complaints, close, kill, startAgain };
+  /** Calls the program beside the page, as a script would. */
+  const call = async (name, params) => {
+    const { origin, hash } = new URL(address);
+    const answer = await fetch(`${origin}/call`, {
+      method: "POST", body: JSON.stringify({ id: 1, call: name, params }),
+      headers: { "Content-Type": "application/json", Authorization: `Bearer ${new URLSearchParams(hash.slice(1)).get("token")}` },
+    });
+    return (await answer.json()).result;
+  };
+  return { page, address, complaints, close, kill, startAgain, call, hand: () => sent };
 }
 
 /** What axe-core finds that is serious. */
@@ -95,6 +108,27 @@ export async function seriousFindings(page) {
   const { violations } = await page.evaluate(() => globalThis.axe.run());
   return violations.filter((v) => v.impact === "serious" || v.impact === "critical")
     .map((v) => `${v.id}: ${v.nodes.map((n) => n.html).join(" | ")}`);
+}
+
+/** Controls that can be seen and used, but that the tabulator does not come to. */
+export async function outOfReach(page) {
+  await page.evaluate(() => {
+    globalThis.reached = new Set();
+    globalThis.looks = (control) => `${control.tagName} ${control.getAttribute("aria-label")} ${control.textContent}`; // it may be made anew
+  });
+  // Round once, over the end of the page.
+  const goesOn = () => page.evaluate(() => {
+    let at = document.activeElement;
+    while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement;
+    const isNew = at === document.body || !globalThis.reached.has(at);
+    globalThis.reached.add(at).add(globalThis.looks(at));
+    return isNew;
+  });
+  do await page.keyboard.press("Tab");
+  while (await goesOn());
+  return page.evaluate(() => [...document.querySelectorAll("button, input:not([type=radio]), select, textarea, summary, a[href], [tabindex]")]
+    .filter((control) => !control.disabled && control.checkVisibility({ visibilityProperty: true }) && !control.closest("[aria-hidden=true]") && !globalThis.reached.has(globalThis.looks(control)))
+    .map((control) => control.outerHTML.slice(0, 120)));
 }
 
 export async function picture(page, name) {

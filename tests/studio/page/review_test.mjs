@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, picture, reading, seriousFindings } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, picture, reading, seriousFindings } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm";
 let folder, studio, page, expert, clumsy;
@@ -85,6 +85,22 @@ test("keys move and play it", async () => {
   const paused = await clock();
   await page.waitForTimeout(300);
   assert.equal(await clock(), paused);
+  // At a tenth of the speed, and four times as fast: as far as time has gone, or less where the machine is slow.
+  const rateAt = async (speed) => {
+    await page.locator(".transport select").selectOption(String(speed));
+    await page.keyboard.press("Home");
+    await page.click(".transport button.main");
+    const [began, from] = [Date.now(), await clock()];
+    await page.waitForTimeout(800);
+    const [went, far] = [(Date.now() - began) / 1e3, (await clock()) - from];
+    await page.click(".transport button.main");
+    assert.ok(far > 0 && far <= speed * (went + 0.1), `${speed} x: ${far} s in ${went} s`);
+    return far / went;
+  };
+  const [slow, fast] = [await rateAt(0.1), await rateAt(4)];
+  assert.ok(fast > 3 * slow, `${fast} and ${slow}`);
+  await page.locator(".transport select").selectOption("1");
+  await page.locator(".view > canvas").focus();
   await page.keyboard.press("End");
   await page.waitForFunction((seconds) => Math.abs(Number.parseFloat(document.querySelector(".clock").textContent) - seconds) < 1e-3, expert.duration_s);
 });
@@ -234,6 +250,46 @@ test("two sessions beside each other, compared", async () => {
   await page.waitForTimeout(500);
   assert.deepEqual(await seriousFindings(page), []);
   await picture(page, "review-compare");
+});
+
+test("along the path both tools are at the same place of it, and by hand as far apart in time as one says", async () => {
+  const scrubTo = async (time) => {
+    await page.locator(".scrub").evaluate((slider, value) => {
+      slider.value = String(value);
+      slider.dispatchEvent(new Event("input", { bubbles: true }));
+    }, time);
+    await page.waitForFunction((shown) => document.querySelector(".clock").textContent.startsWith(shown), time.toFixed(3));
+    return (await page.locator(".captions b").allInnerTexts()).map((text) => Number(/([-\d.]+) s$/.exec(text)[1]));
+  };
+  assert.equal(await page.locator(".plots div[data-title='difference of force [N]']").count(), 1);
+  const { path_s } = await studio.call("session.compare", { expert: kExpert, trainee: kClumsy });
+  const motions = await Promise.all([kExpert, kClumsy].map((path) => studio.call("session.motion", { path, rate_hz: 200 })));
+  const placeAt = (i, time) => motions[i].poses[Math.round(time / motions[i].interval_s)].slice(1, 4);
+  const apart = (here, there) => Math.hypot(...placeAt(0, here).map((x, axis) => x - placeAt(1, there)[axis]));
+  const moments = [0.3, 0.5, 0.7].map((share) => path_s[Math.floor(share * path_s.length)][0]);
+  const mean = async () => {
+    let sum = 0;
+    for (const moment of moments) sum += apart(...(await scrubTo(moment))) / moments.length;
+    return sum;
+  };
+  await page.click("#panel button:text-is('first contact')");
+  const atContact = await mean();
+  await page.click("#panel button:text-is('path')");
+  await page.waitForSelector("#panel button[aria-pressed=true]:text-is('path')");
+  const alongPath = await mean();
+  console.log(`aligned by first contact the tools are ${(1e3 * atContact).toFixed(1)} mm apart, along the path ${(1e3 * alongPath).toFixed(1)} mm`);
+  assert.ok(alongPath < 0.9 * atContact, `${alongPath} and ${atContact}`);
+  for (const moment of moments) {
+    const belong = path_s.filter(([here]) => here === moment).map(([, there]) => there), [here, there] = await scrubTo(moment);
+    assert.ok(here === Number(moment.toFixed(3)) && there >= Math.min(...belong) - 1e-3 && there <= Math.max(...belong) + 1e-3, `${here}, ${there}: ${belong}`);
+  }
+  await page.waitForTimeout(700); // until both are replayed
+  await picture(page, "review-along-path");
+  await page.locator("#panel input[type=number]").fill("0.25");
+  await page.keyboard.press("Tab");
+  assert.deepEqual(await scrubTo(2), [2, 2.25]);
+  assert.equal(await page.locator("#panel [aria-label='Align at'] button[aria-pressed=true]").count(), 0);
+  assert.deepEqual(await outOfReach(page), []);
 });
 
 test("notes stay, and a link leads to the moment", async () => {

@@ -1,15 +1,17 @@
 // A trainee in a browser: train_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { readFileSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { openDevice } from "./igtl.mjs";
-import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, picture, reading, seriousFindings } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm";
+const kByMouse = join(paths.pictures, "by-mouse.ctpm"); // for another build: another_build.sh
 let folder, studio, page;
 
 before(async () => {
+  rmSync(kByMouse, { force: true });
   folder = makeFolder("kidney.json", kExpert);
   // A scene whose names are HTML.
   const scene = JSON.parse(readFileSync(join(folder, "kidney.json"), "utf8"));
@@ -38,6 +40,23 @@ async function drag(from, by, steps) {
   }
 }
 
+const kTissue = [[60, 0, 0], [255, 60, 60]], kArrow = [[240, 185, 57], [255, 215, 117]]; // least and most of red, green, blue
+
+/** How many pixels of the view's picture, left of the bar over it, have such a colour. */
+async function pixels(colour) {
+  const { x, y, width, height } = await page.locator(".view canvas").boundingBox();
+  const bytes = await page.screenshot({ clip: { x, y, width: width - 80, height } });
+  return page.evaluate(async ([encoded, [least, most]]) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(encoded), (c) => c.charCodeAt(0))]));
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) count += [0, 1, 2].every((c) => data[i + c] >= least[c] && data[i + c] <= most[c]);
+    return count;
+  }, [bytes.toString("base64"), colour]);
+}
+
 test("an empty room says what to do", async () => {
   assert.match(await page.locator(".view .empty").innerText(), /Choose a scene/);
   assert.deepEqual(await seriousFindings(page), []);
@@ -51,15 +70,7 @@ test("names in a scene are text", async () => {
   assert.equal(await page.locator(".transport button:has-text('<b onclick=alert(2)>ball</b>')").count(), 1);
   // The organ is in the picture, although the scene's first camera looks elsewhere.
   await page.waitForTimeout(500);
-  const red = await page.evaluate(async (bytes) => {
-    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))]));
-    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
-    context.drawImage(bitmap, 0, 0);
-    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
-    let count = 0;
-    for (let i = 0; i < data.length; i += 4) count += data[i] > data[i + 1] + 40;
-    return count / (data.length / 4);
-  }, (await page.locator(".view canvas").screenshot()).toString("base64"));
+  const { width, height } = await page.locator(".view canvas").boundingBox(), red = (await pixels(kTissue)) / (width * height);
   assert.ok(red > 0.03, `${red} of the picture is tissue`);
   await page.click("button:has-text('End')");
   await page.waitForSelector("button:has-text('Train again')");
@@ -112,6 +123,149 @@ test("the mouse leads one of two hands, and the other one stays", async () => {
   await page.click("button:has-text('Train again')");
 });
 
+/** Axes of the hand in the scene: to the right in the picture, up, and away from the viewer of its first camera. */
+function handAxes() {
+  const [camera] = JSON.parse(readFileSync(join(folder, "kidney.json"), "utf8")).cameras;
+  const x = camera.target_mm[0] - camera.eye_mm[0], y = camera.target_mm[1] - camera.eye_mm[1], far = Math.hypot(x, y);
+  return { eye: camera.eye_mm.map((c) => c / 1e3), right: [y / far, -x / far, 0], up: [0, 0, 1], deep: [x / far, y / far, 0] };
+}
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const minus = (a, b) => a.map((x, i) => x - b[i]);
+
+/** Where the hand is when it has followed the pointer. */
+async function handAtRest() {
+  for (let before = null; ; ) {
+    await page.waitForTimeout(150);
+    const { position } = studio.hand();
+    if (before && Math.hypot(...minus(position, before)) < 1e-9) return position;
+    before = position;
+  }
+}
+
+test("the wheel moves the tool away from the viewer, and the pointer slows as the tissue resists", async () => {
+  const { eye, right, up, deep } = handAxes();
+  await page.locator("aside input").first().fill("wheel.ctpm");
+  await page.click(".list button:has-text('kidney')");
+  await page.waitForSelector(".view.running");
+  const box = await page.locator(".view canvas").boundingBox();
+  const middle = { x: box.x + box.width / 2, y: box.y + 60 };
+  await page.mouse.move(middle.x, middle.y);
+  const start = await handAtRest();
+  const roll = async (notches) => {
+    for (let i = 0; i < Math.abs(notches); ++i) await page.mouse.wheel(0, notches > 0 ? -100 : 100);
+    return minus(await handAtRest(), start);
+  };
+  const away = await roll(10);
+  for (const [axis, by] of [[deep, 15e-3], [right, 0], [up, 0]]) assert.ok(Math.abs(dot(away, axis) - by) < 1e-5, `${away}`);
+  assert.ok(Math.hypot(...(await roll(-10))) < 1e-5, "it comes back by as many notches");
+  // Keys turn it, about three axes of its own and back.
+  for (const [key, back, axis] of [["q", "e", 3], ["w", "s", 1], ["a", "d", 2]]) {
+    const turned = async (pressed) => (await page.keyboard.press(pressed), await handAtRest(), studio.hand().orientation);
+    const [before, after] = [studio.hand().orientation, await turned(key)];
+    const inverse = before.map((x, i) => (i ? -x : x)), [w, x, y, z] = inverse, [W, X, Y, Z] = after;
+    const turn = [w * W - x * X - y * Y - z * Z, w * X + x * W + y * Z - z * Y, w * Y - x * Z + y * W + z * X, w * Z + x * Y - y * X + z * W];
+    assert.ok(Math.abs(turn[axis] - Math.sin(Math.PI / 72)) < 1e-6 && Math.abs(turn[0] - Math.cos(Math.PI / 72)) < 1e-6, `${key}: ${turn}`);
+    assert.ok((await turned(back)).every((c, i) => Math.abs(c - before[i]) < 1e-6), back);
+  }
+
+  // 40 pixels to the right: how far the hand goes, as a share of its distance from the viewer.
+  const goRight = async (y) => {
+    const from = await handAtRest();
+    await drag({ x: middle.x, y }, { x: 40, y: 0 }, 10);
+    const to = await handAtRest();
+    await drag({ x: middle.x + 40, y }, { x: -40, y: 0 }, 10);
+    return dot(minus(to, from), right) / Math.hypot(...minus(from, eye));
+  };
+  const force = async () => Number.parseFloat(await page.locator(".force-bar output").innerText());
+  const arrow = () => pixels(kArrow);
+  const free = await goRight(middle.y);
+  assert.equal(await arrow(), 0);
+  let y = middle.y;
+  for (; (await force()) < 2 && y < middle.y + 400; y += 10) await drag({ x: middle.x, y }, { x: 0, y: 10 }, 4);
+  const forces = [await force()], watch = setInterval(() => void force().then((f) => forces.push(f), () => {}), 60);
+  const pressed = await goRight(y);
+  clearInterval(watch);
+  forces.push(await force());
+  const share = pressed / free, gain = (f) => 1 / (1 + f / 6);
+  const [least, most] = [gain(Math.max(...forces)), gain(Math.min(...forces))];
+  assert.ok((await arrow()) > 150, "an arrow shows the force");
+  assert.ok(share > least - 0.03 && share < Math.min(most + 0.03, 0.9), `${share} of the way, between ${least} and ${most} are right`);
+  await picture(page, "train-slowed");
+  for (const [width, height] of [[1920, 1080], [820, 1180], [1280, 720]]) {
+    await page.setViewportSize({ width, height });
+    await page.waitForTimeout(300);
+    assert.ok((await overflow(page)) <= 0, `${width}x${height}`);
+    if (width !== 1280) await picture(page, `train-running-${width}x${height}`);
+  }
+  await page.keyboard.press("Escape");
+  await page.waitForSelector("button:has-text('Train again')");
+  // The tool was where the hand was, until the tissue turned it aside.
+  assert.equal(ctpm(folder, "replay", "wheel.ctpm", "--csv", "wheel.csv").code, 0);
+  const rows = readFileSync(join(folder, "wheel.csv"), "utf8").trim().split("\n").slice(1).map((row) => row.split(",")).filter((row) => Number(row[14]) === 0)
+    .map((row) => row.slice(3, 6).map((mm) => Number(mm) / 1e3));
+  const deepest = Math.max(...rows.map((place) => dot(minus(place, start), deep)));
+  assert.ok(Math.abs(deepest - 15e-3) < 1.5e-3, `${deepest}`); // the virtual coupling overshoots
+  await page.click("button:has-text('Train again')");
+});
+
+test("the expert's ghost is ahead, or at the same place of its path", async () => {
+  const { right, up, deep } = handAxes();
+  await page.locator("aside input").first().fill("");
+  await page.locator("aside .field:has-text('expert') select").selectOption(kExpert);
+  await page.click(".list button:has-text('kidney')");
+  await page.waitForSelector(".view.running");
+  const { poses, interval_s } = await studio.call("session.motion", { path: kExpert, rate_hz: 60 });
+  const canvas = page.locator(".view canvas"), box = await canvas.boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + 60);
+  // By keys to the first pose of the expert, and beside its way down.
+  const goTo = async (place) => {
+    const way = minus(place, await handAtRest());
+    for (const [axis, more, less] of [[right, "ArrowRight", "ArrowLeft"], [up, "ArrowUp", "ArrowDown"], [deep, "PageUp", "PageDown"]])
+      for (let mm = Math.round(1e3 * dot(way, axis)); mm !== 0; mm -= Math.sign(mm)) await page.keyboard.press(mm > 0 ? more : less);
+    return handAtRest();
+  };
+  const first = poses.findIndex(([tool]) => tool >= 0), placeOf = (pose) => pose.slice(1, 4);
+  const begin = placeOf(poses[first]);
+  await goTo(begin);
+  const hand = await goTo([begin[0], begin[1], begin[2] - 0.008]);
+  const far = poses.map((pose) => (pose[0] < 0 ? Infinity : Math.hypot(...minus(placeOf(pose), hand))));
+  const here = far.indexOf(Math.min(...far)), ahead = here + Math.round(0.25 / interval_s);
+  assert.ok(here > first && far[here] < 1e-3 && far[ahead] > 5e-3, `${here}: ${far[here]}, ${ahead}: ${far[ahead]}`);
+  const choose = async (label, far) => {
+    await page.locator("aside .field:has-text('the ghost is') select").selectOption({ label });
+    await page.waitForTimeout(500); // a frame comes 60 times a second
+    const shown = await reading(page, "away from your tool"); // of a pose or two later: the ghost never goes back
+    assert.ok(Math.abs(shown - 1e3 * far) < 1.2, `${label}: ${shown} mm, ${1e3 * far}`);
+    return canvas.screenshot();
+  };
+  const same = await choose("where you are on its path", far[here]);
+  const later = await choose("a little ahead", far[ahead]);
+  await picture(page, "train-ghost");
+  await page.locator("aside .field:has-text('expert') select").selectOption("");
+  await page.waitForTimeout(200);
+  const none = await canvas.screenshot();
+  // What the ghost changes in the picture is where the expert's tool was: lower, by what the way between the poses is in pixels.
+  const rowOf = (shown) => page.evaluate(async ([a, b]) => {
+    const pixels = async (bytes) => {
+      const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))]));
+      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+      context.drawImage(bitmap, 0, 0);
+      return context.getImageData(0, 0, bitmap.width, bitmap.height);
+    };
+    const [one, other] = [await pixels(a), await pixels(b)];
+    let lowest = -1, count = 0;
+    for (let i = 0; i < one.data.length; i += 4)
+      if (Math.abs(one.data[i] - other.data[i]) + Math.abs(one.data[i + 2] - other.data[i + 2]) > 20) ++count, lowest = Math.floor(i / 4 / one.width);
+    return { lowest, count };
+  }, [shown, none].map((bytes) => bytes.toString("base64")));
+  const [atSame, atLater] = [await rowOf(same), await rowOf(later)];
+  assert.ok(atSame.count > 200 && atLater.count > 200, `${atSame.count} and ${atLater.count} pixels`);
+  assert.ok(atLater.lowest > atSame.lowest + 5, `${atSame.lowest} and ${atLater.lowest}`);
+  await page.keyboard.press("Escape");
+  await page.waitForSelector("button:has-text('Train again')");
+  await page.click("button:has-text('Train again')");
+});
+
 test("the mouse presses, cuts and records", async () => {
   await page.locator("aside input").first().fill("mine.ctpm");
   await page.locator("aside .field:has-text('expert') select").selectOption(kExpert);
@@ -159,6 +313,7 @@ test("the session verifies to the bit, and is compared at once", async () => {
   const command = ctpmBeside(folder, "verify", "mine.ctpm");
   await page.click("aside button.main");
   await page.waitForSelector("aside table");
+  assert.deepEqual(await outOfReach(page), []);
   assert.match(await page.locator("aside .good").first().innerText(), /no difference/);
   assert.deepEqual(await seriousFindings(page), []);
   await picture(page, "train-ended");
@@ -167,6 +322,8 @@ test("the session verifies to the bit, and is compared at once", async () => {
   const info = JSON.parse(ctpm(folder, "info", "mine.ctpm", "--json").out);
   assert.equal(info.metadata.source, "studio");
   assert.ok(info.severed > 0);
+  mkdirSync(paths.pictures, { recursive: true });
+  copyFileSync(join(folder, "mine.ctpm"), kByMouse);
   // The same motion as a table, recorded by the command, does the same to the tissue; the table has nine digits.
   assert.equal(ctpm(folder, "replay", "mine.ctpm", "--csv", "mine.csv").code, 0);
   const again = ctpm(folder, "record", "kidney.json", "--motion", "mine.csv", "-o", "again.ctpm");
@@ -220,6 +377,7 @@ test("a device leads, and the page looks on", async () => {
   await field("tool in the hand").locator("input").fill("saw");
   assert.match(await page.locator("aside .command code").innerText(), /-o device\.ctpm --igtl-listen 0 --device-offset-mm 0 0 75 --device-tool saw$/);
   await picture(page, "train-device-form");
+  assert.deepEqual(await outOfReach(page), []);
   assert.deepEqual(await seriousFindings(page), []);
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".problems:has-text('saw')"); // no tool of the scene

@@ -16,6 +16,7 @@
 #include "studio/render/renderer.h"
 #include "studio/views/look.h"
 #include "studio/views/view_of_scene.h"
+#include "tests/studio/commands/running_program.h"
 #include "tests/studio/server/serving.h"
 
 namespace ctpm {
@@ -377,8 +378,22 @@ TEST_F(Reviewing, ADamagedSessionIsSaidSo) {
   EXPECT_TRUE(client.call("session.open", {{"path", kCut}, {"stage", 0}}).contains("result"));
 }
 
-TEST(StudioProgram, PrintsItsAddressAndEndsByCtrlC) {
+TEST(StudioProgram, PrintsItsAddressOpensItAndEndsByCtrlC) {
   const testing::TemporaryFolder folder;
+  // What a desktop opens addresses with.
+  const fs::path opener = folder.path() / "xdg-open", opened = folder.path() / "opened";
+  std::ofstream(opener) << "#!/bin/sh\necho \"$1\" >" << opened.string() << ".part; mv " << opened.string() << ".part "
+                        << opened.string() << "\n";
+  fs::permissions(opener, fs::perms::owner_all);
+  setenv("DISPLAY", ":0", 1);
+  setenv("PATH", (folder.path().string() + ":" + getenv("PATH")).c_str(), 1);
+  testing::RunningProgram program({"studio", "--port", "0"}, folder.path());
+  EXPECT_TRUE(program.wait_until([&] { return fs::exists(opened); }));
+  program.interrupt();
+  const testing::ProgramOutcome ended = program.outcome();
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(ended.out.starts_with("http://127.0.0.1:")) << ended.out;
+  EXPECT_EQ(testing::slurp(opened), ended.out);
   const testing::ProgramOutcome missing = testing::run_ctpm({"studio", "nowhere", "--no-open"}, folder.path());
   EXPECT_EQ(missing.code, 2);
   EXPECT_NE(missing.err.find("nowhere: error: does not exist"), std::string::npos) << missing.err;

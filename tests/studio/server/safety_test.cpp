@@ -258,6 +258,38 @@ TEST_F(Safety, UploadsAreWholeOrNothing) {
   expect_it_goes_on(serving);
 }
 
+/// Largest resident memory of this process since forget_peak() [KiB].
+long peak_kib() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmHWM:")) return std::stol(line.substr(6));
+  return -1;
+}
+void forget_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
+TEST_F(Safety, UploadsAreStreamedToTheDisk) {
+  constexpr std::size_t kPart = 1 << 20, kParts = 300;
+  const Serving serving(folder());
+  const auto part = [](std::size_t number) { return std::string(kPart, char('a' + number % 26)); };
+  forget_peak();
+  const long before = peak_kib();
+  {
+    const RawClient client(serving.port(), 60);
+    ASSERT_TRUE(client.send(serving.head(
+        "PUT /upload/large.stl", serving.bearer() + "Content-Length: " + std::to_string(kParts * kPart) + "\r\n")));
+    for (std::size_t i = 0; i < kParts; ++i) ASSERT_TRUE(client.send(part(i)));
+    EXPECT_EQ(status_of(client.receive()), 201);
+  }
+  const long more = peak_kib() - before;
+  ASSERT_GT(before, 0);
+  EXPECT_LT(more, 16 << 10) << "KiB more for " << kParts << " MiB";
+  std::ifstream stored(folder() / "large.stl", std::ios::binary);
+  std::string read(kPart, ' ');
+  for (std::size_t i = 0; i < kParts; ++i) ASSERT_TRUE(stored.read(read.data(), kPart) && read == part(i)) << i;
+  EXPECT_EQ(stored.peek(), EOF);
+  expect_it_goes_on(serving);
+}
+
 TEST_F(Safety, HugeMessagesAreNotTaken) {
   const Serving serving(folder());
   struct rusage before {
