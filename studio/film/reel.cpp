@@ -115,9 +115,11 @@ Result<Shot> Reel::shoot(std::int64_t frame) const {
   if (!shot) return shot;
   shot->overlay.level = level;
   shot->overlay.caption = words_at(moments, ticks.tick(frame), told);
-  shot->overlay.is_over = frame >= ticks.ended;
+  shot->overlay.stands = frame < ticks.begun    ? render::Stands::before_start
+                         : frame >= ticks.ended ? render::Stands::after_end
+                                                : render::Stands::no;
   if (ghost) shot->ghost = ghost->hand[std::size_t(frame)];
-  if (shows_pace) shot->overlay.pace = shot->overlay.is_over ? 0 : speed * ticks.share(frame);
+  if (shows_pace) shot->overlay.pace = speed * ticks.share(frame);
   return shot;
 }
 

@@ -194,6 +194,18 @@ std::string counted(std::int64_t count, const std::string& thing) {
   return count == 0 ? "" : std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
+const char* name_of_time(Stands stands) {
+  switch (stands) {
+    case Stands::before_start:
+      return "not begun";
+    case Stands::after_end:
+      return "ended";
+    case Stands::no:
+      return "time";
+  }
+  return "";
+}
+
 /// What the panel says, row by row; rows without a value are left out.
 std::vector<Fact> facts_of(const OverlayData& data) {
   const auto force_of = [&](const char* name, const HandLoad& hand) {
@@ -207,8 +219,10 @@ std::vector<Fact> facts_of(const OverlayData& data) {
                 output::fixed(1000 * hand.depth, 2) + " mm", is_too_deep(data, hand)};
   };
   return {{"model", data.model, false, true},
-          {data.is_over ? "ended" : "time", output::fixed(data.time, 3) + " s"},
-          {"speed", data.pace ? output::fixed(*data.pace, 2) + " x" : ""},
+          {name_of_time(data.stands), output::fixed(data.time, 3) + " s"},
+          {"speed", !data.pace                  ? ""
+                    : data.stands == Stands::no ? output::fixed(*data.pace, 2) + " x"
+                                                : "-"},
           {"clock behind", data.slip < 0.01 ? "" : output::fixed(data.slip, 2) + " s", true},
           {"tick", std::to_string(data.tick), false, true},
           force_of("force", data.hand),

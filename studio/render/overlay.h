@@ -25,6 +25,9 @@ struct HandLoad {
   bool is_blade = false;  ///< the depth is that of the cut, which has no limit
 };
 
+/// Whether a session stands still while the one beside it goes on.
+enum class Stands { no, before_start, after_end };
+
 enum class VerdictTone { none, good, bad };
 
 /// How much the overlay says. A bad verdict is shown at every level.
@@ -32,11 +35,11 @@ enum class OverlayLevel { none, caption, small, full };
 
 /// The content of the overlay. Empty texts are left out; long ones are shortened with an ellipsis.
 struct OverlayData {
-  std::string title;           ///< of the scene
-  std::string model;           ///< structure of the tissue: "CTPM"
-  std::string session;         ///< which recording it is, if there may be several
-  double time = 0;             ///< [s]
-  bool is_over = false;        ///< the session has ended at `time`
+  std::string title;    ///< of the scene
+  std::string model;    ///< structure of the tissue: "CTPM"
+  std::string session;  ///< which recording it is, if there may be several
+  double time = 0;      ///< [s]
+  Stands stands = Stands::no;
   std::optional<double> pace;  ///< time of the session against that of the film; not shown if unset
   std::int64_t tick = 0;
   OverlayLevel level = OverlayLevel::full;

@@ -37,7 +37,7 @@ TEST(Captions, TrackAndPictureSayTheSameInEveryFrame) {
   const std::vector<film::Moment> moments{
       {0, "title", Kind::title}, {333, "one", Kind::cut}, {1500, "two", Kind::cut}, {9999, "beyond", Kind::cut}};
   // Slow in the middle, as where two sessions are matched.
-  film::FrameTicks ticks{{0, 2000}, 90, 90, {}, {}};
+  film::FrameTicks ticks{{0, 2000}, 90, 0, 90, {}, {}};
   ticks.tick = [](std::int64_t frame) {
     return frame < 20   ? 33 * frame
            : frame < 60 ? 660 + 5 * (frame - 20)

@@ -279,6 +279,16 @@ TEST_F(Export, BesideKeepsTheSecondsThatItIsAheadByHand) {
     }
     fs::remove_all(folder_.path() / "both");
   }
+  // What has not begun says so, and has no speed.
+  const auto waiting = run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--fps", "20",
+                                 "--align", "-0.25", "--to-s", "0.1"},
+                                folder_.path());
+  ASSERT_EQ(waiting.code, 0) << waiting.err;
+  const render_test::GlyphReader reader(640, 720);
+  const render::Frame still = half_of(picture("both", 2), 1);
+  EXPECT_EQ(reader.read_after(still, "not begun"), "0.000 s");
+  EXPECT_EQ(reader.read_after(still, "speed"), "-");
+  EXPECT_EQ(reader.read_after(half_of(picture("both", 2), 0), "speed"), "1.00 x");
   const auto apart = export_ahead("0.6");
   EXPECT_EQ(apart.code, 2);
   EXPECT_TRUE(holds(apart.err, "--align: error: got 0.600 s, and the sessions have no moment in common")) << apart.err;
