@@ -10,6 +10,7 @@
 #include "studio/render/renderer.h"
 #include "studio/views/look.h"
 #include "studio/views/view_of_scene.h"
+#include "tests/studio/render/scene.h"
 
 namespace ctpm {
 namespace {
@@ -162,6 +163,33 @@ TEST_F(WoundCamera, IsTheSameEveryTimeAndTheScenesWhereNothingIsCut) {
   const auto none = views::find_look(request, scene_, view_, kAspect, &whole);
   ASSERT_FALSE(none);
   EXPECT_NE(to_string(none.errors()[0]).find("nothing is cut"), std::string::npos);
+}
+
+/// The line of sight of the camera on a ball that presses the first organ from above.
+Vec3 sight_of_press(const Model& model) {
+  State state = rest_state(model);
+  state.last_inputs.tool = 0, state.last_inputs.position = {0, 0, 0.03};
+  const render::SceneView view{&model, {}, {}};
+  const auto camera =
+      views::event_camera(views::Event::press, view, state, render::default_camera(view, kAspect), kAspect);
+  EXPECT_TRUE(camera && *camera);
+  const Vec3 sight = (*camera)->target - (*camera)->eye;
+  return sight / norm(sight);
+}
+
+TEST(EventCamera, AnOrganAsideDoesNotTurnIt) {
+  const FilledOrgan blob =
+      render_test::fill(render_test::blob, render_test::star_surface(render_test::blob, 40), 0.004);
+  const auto alone = render_test::make_scene(blob), pair = render_test::make_scene(blob);
+  FilledOrgan aside = blob;
+  const Vec3 away{0.3, 0, 0};
+  for (auto* points : {&aside.centre, &aside.surface.vertex})
+    for (Vec3& p : *points) p = p + away;
+  network::OrganSettings settings;
+  settings.name = "other", settings.material = {15e6, 15e6, 20e6, 5e6, 1060, 1, std::numbers::pi * 4e-6, 0.012};
+  ASSERT_TRUE(network::add_organ(pair->model, aside, settings));
+  constexpr double kAStep = 0.9;  // cosine of somewhat less than the 30 degrees between directions
+  EXPECT_GT(dot(sight_of_press(alone->model), sight_of_press(pair->model)), kAStep);
 }
 
 /// Pixels that show the pressed place, of which the spheres are green.
