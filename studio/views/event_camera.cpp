@@ -148,20 +148,30 @@ Result<std::optional<Camera>> event_camera(Event event, const render::SceneView&
                                            const Camera& usual, double aspect) {
   constexpr int kWidth = 224, kHeight = 126;
   constexpr double kUsualCounts = 0.5;  // what is seen from the other side counts so much less
+  constexpr int kWhole = 4;             // power of the part of the organ in the picture
+  constexpr double kFarther = 1.3;      // so much farther it stands where that shows the whole organ
   const Subject subject = event == Event::wound ? wound_of(scene, state) : press_of(scene, state);
   if (subject.points.empty()) return std::optional<Camera>();
   Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(kWidth, kHeight, subject.scene);
   if (!renderer) return renderer.errors();
   const std::vector<Vec3> ways = directions(*scene.model, usual), points = framed(scene, subject.points, aspect);
+  std::vector<Vec3> whole = points;
+  append(whole, subject.organs);
   const Vec3 up = render::up_of(*scene.model);
   double best = 0;
   std::optional<Camera> found;
   for (const Vec3& way : ways) {
-    const Camera camera = render::fit_camera(std::span<const Vec3>(points), way, up, usual.fov_deg, aspect);
+    const auto fitted = [&](const std::vector<Vec3>& shown) {
+      return render::fit_camera(std::span<const Vec3>(shown), way, up, usual.fov_deg, aspect);
+    };
+    Camera camera = fitted(points);
+    if (const Camera farther = fitted(whole);
+        norm(farther.eye - farther.target) < kFarther * norm(camera.eye - camera.target))
+      camera = farther;
     const double likeness = 0.5 + 0.5 * dot(way, ways.front());
-    const double whole = share_in_picture(camera, aspect, subject.organs);
-    const double score =
-        visible(**renderer, subject, state, camera) * (1 - kUsualCounts * (1 - likeness)) * whole * whole;
+    const double in_picture = share_in_picture(camera, aspect, subject.organs);
+    const double score = visible(**renderer, subject, state, camera) * (1 - kUsualCounts * (1 - likeness)) *
+                         std::pow(in_picture, kWhole);
     if (score > best) best = score, found = camera;
   }
   return found;

@@ -229,6 +229,29 @@ TEST(PressCamera, SeesThePressedTissueOfEachSession) {
   }
 }
 
+TEST(EventCamera, TheWholeOrganIsInThePictureOfEachSession) {
+  for (const char* name : {"liver-press-expert", "liver-press-clumsy", "kidney-cut-expert", "kidney-cut-clumsy"}) {
+    auto reader =
+        recordings::SessionReader::open(std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/" + name + ".ctpm");
+    ASSERT_TRUE(reader);
+    const session::TickRange whole{0, reader->tick_count()};
+    const auto all = film::all_moments(*reader, whole);
+    ASSERT_TRUE(all);
+    const auto told = film::telling_state(*reader, whole, *all);
+    const auto text = scenes::read_scene(reader->start().scene_text, "scene");
+    ASSERT_TRUE(told && text);
+    const render::SceneView view = views::view_of(text->spec, reader->start().model);
+    const auto chosen = views::find_look({}, text->spec, view, kAspect, &*told);
+    ASSERT_TRUE(chosen);
+    int in = 0, points = 0;
+    for (const Vec3& point : render::rest_points(view)) {
+      const render::Pixel at = render::project(chosen->draw.camera, 1280, 720, point);
+      ++points, in += at.x > 0 && at.x < 1280 && at.y > 0 && at.y < 720;
+    }
+    EXPECT_GT(in, 0.98 * points) << name;
+  }
+}
+
 TEST_F(WoundCamera, ASessionThatIsCutTellsOfItsPressToo) {
   const session::TickRange whole{0, reader_->tick_count()};
   const std::int64_t pressed = 700;
