@@ -77,6 +77,8 @@ void make_room(Reel& reel, recordings::SessionReader& session, const render::Pic
   data.level = reel.level;
   data.history.push_back({});
   data.hand.is_blade = true;  // it has the longest name of a depth
+  for (const Moment& moment : reel.moments)
+    if (moment.text.size() > data.caption.size()) data.caption = moment.text;
   data.legend = render::legend_of(reel.film->model(), reel.look.draw);
   std::vector<render::PixelBox> panels = reel.overlay->standing_panels(data);
   for (std::size_t i = 0; i < reel.insets.size(); ++i) panels.push_back(Inset::box(size, int(i)));

@@ -487,7 +487,7 @@ std::vector<PlacedText> Overlay::layout(const OverlayData& data) {
 std::vector<PixelBox> Overlay::standing_panels(const OverlayData& data) {
   const Plan plan = parts_->plan(data);
   std::vector<PixelBox> panels;
-  for (const PixelBox& box : {plan.names, plan.facts, plan.plot, plan.verdict, plan.legend})
+  for (const PixelBox& box : {plan.names, plan.facts, plan.plot, plan.verdict, plan.legend, plan.caption})
     if (box.height > 0) panels.push_back(box);
   return panels;
 }

@@ -98,7 +98,7 @@ class Overlay {
   /// All texts of draw() and their rectangles, without drawing.
   std::vector<PlacedText> layout(const OverlayData& data);
 
-  /// The panels of draw() that are there whatever happens, without drawing: no warning and no caption.
+  /// The panels of draw() but the warning, without drawing.
   std::vector<PixelBox> standing_panels(const OverlayData& data);
 
  private:

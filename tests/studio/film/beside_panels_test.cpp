@@ -58,6 +58,15 @@ TEST_F(BesidePanels, TheOrganComesOutFromBehindAPanelWithoutATurn) {
   }
 }
 
+TEST_F(BesidePanels, ItRisesAboveAPanelAlongTheWholeBottom) {
+  const std::vector<Vec3> organ = plate(-0.08, 0.08);
+  const std::vector<render::PixelBox> panels{{20, 340, 1240, 360}};
+  const auto found = film::beside_panels(camera_, kSize, panels, {organ, {}});
+  EXPECT_GT(hidden(camera_, organ, panels), 100);
+  EXPECT_EQ(hidden(found, organ, panels), 0);
+  EXPECT_NEAR(norm((found.target - found.eye) - (camera_.target - camera_.eye)), 0, 1e-12);
+}
+
 TEST_F(BesidePanels, ToolsCountToo) {
   const std::vector<Vec3> organ = plate(-0.03, 0.03), tools = plate(-0.12, -0.10);
   const std::vector<render::PixelBox> panels{{20, 20, 300, 680}};
