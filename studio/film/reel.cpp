@@ -80,6 +80,7 @@ void make_room(Reel& reel, recordings::SessionReader& session, const render::Pic
   for (const Moment& moment : reel.moments)
     if (moment.text.size() > data.caption.size()) data.caption = moment.text;
   data.legend = render::legend_of(reel.film->model(), reel.look.draw);
+  data.taken_right = reel.taken_right;
   std::vector<render::PixelBox> panels = reel.overlay->standing_panels(data);
   for (std::size_t i = 0; i < reel.insets.size(); ++i) panels.push_back(Inset::box(size, int(i)));
   if (panels.empty()) return;
@@ -120,7 +121,8 @@ Result<Shot> Reel::shoot(std::int64_t frame) const {
   shot->overlay.stands = frame < ticks.begun    ? render::Stands::before_start
                          : frame >= ticks.ended ? render::Stands::after_end
                                                 : render::Stands::no;
-  if (ghost) shot->ghost = ghost->hand[std::size_t(frame)];
+  shot->overlay.taken_right = taken_right;
+  if (ghost) shot->ghost = ghost->hand[std::size_t(frame)], shot->overlay.ghost = ghost->session;
   if (shows_pace) shot->overlay.pace = speed * ticks.share(frame);
   return shot;
 }
@@ -152,6 +154,7 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
     Result<Inset> inset = Inset::create(kind, {size.width, height}, reel.renderer->scene());
     if (!inset) return inset.errors();
     reel.insets.push_back(std::move(*inset));
+    reel.taken_right = Inset::taken_right({size.width, height});
   }
   reel.overlay = std::make_unique<render::Overlay>(size.width, height);
   const std::string title = reel.film->scene().name + ": " + std::filesystem::path(session.path()).stem().string();

@@ -36,6 +36,7 @@ struct Reel {
   render::OverlayLevel level = render::OverlayLevel::full;
   std::optional<Ghost> ghost;
   std::vector<Inset> insets;
+  int taken_right = 0;  ///< by them [pixels]
   std::optional<render::Strip> strip;
   int strip_height = 0;  ///< [pixels]
 

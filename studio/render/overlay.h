@@ -38,6 +38,7 @@ struct OverlayData {
   std::string title;    ///< of the scene
   std::string model;    ///< structure of the tissue: "CTPM"
   std::string session;  ///< which recording it is, if there may be several
+  std::string ghost;    ///< whose tool is shown through; not told in a narrow picture
   double time = 0;      ///< [s]
   Stands stands = Stands::no;
   std::optional<double> pace;  ///< time of the session against that of the film; not shown if unset
@@ -59,6 +60,7 @@ struct OverlayData {
   double plot_span = 5;             ///< time that the plot covers, up to now [s], > 0
   double least_top_force = 0.1;     ///< smallest upper end of the plot's axis [N], > 0
   std::vector<Pixel> tools;         ///< points of the tools: panels near them fade
+  int taken_right = 0;              ///< width at the lower right where small pictures stand [pixels]
 };
 
 /// The next round number at or above `value`, at least 1e-3: 1, 2 or 5 times a power of ten.
