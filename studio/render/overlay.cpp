@@ -195,17 +195,8 @@ std::string counted(std::int64_t count, const std::string& thing) {
   return count == 0 ? "" : std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
-const char* name_of_time(Stands stands) {
-  switch (stands) {
-    case Stands::before_start:
-      return "not begun";
-    case Stands::after_end:
-      return "ended";
-    case Stands::no:
-      return "time";
-  }
-  return "";
-}
+/// By Stands.
+constexpr std::array<const char*, 3> kNamesOfTime{"time", "not begun", "ended"};
 
 /// What the panel says, row by row; rows without a value are left out.
 std::vector<Fact> facts_of(const OverlayData& data) {
@@ -220,7 +211,7 @@ std::vector<Fact> facts_of(const OverlayData& data) {
                 output::fixed(1000 * hand.depth, 2) + " mm", is_too_deep(data, hand)};
   };
   return {{"model", data.model, false, true},
-          {name_of_time(data.stands), output::fixed(data.time, 3) + " s"},
+          {kNamesOfTime[std::size_t(data.stands)], output::fixed(data.time, 3) + " s"},
           {"speed", !data.pace                  ? ""
                     : data.stands == Stands::no ? output::fixed(*data.pace, 2) + " x"
                                                 : "-"},
