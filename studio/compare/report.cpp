@@ -106,7 +106,7 @@ std::string caption_of(const Moment& moment, std::size_t number) {
   const bool has_limit = moment.kind != MomentKind::stray_cut;
   return std::to_string(number) + ". " + to_word(moment.kind) + " at " + output::fixed(moment.worst_s, 2) +
          " s: " + output::short_number(moment.value) + " " + moment.unit +
-         (has_limit ? ", limit " + output::short_number(moment.limit) : "");
+         (has_limit ? ", limit " + output::short_number(moment.limit) + " " + moment.unit : "");
 }
 
 Result<Done> add_moments(reports::Report& report, const Comparison& comparison,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace ctpm::film {
 namespace {
@@ -14,12 +15,12 @@ constexpr double kMargin = 0.02;        // of the picture's width, between organ
 constexpr std::size_t kPoints = 4000;   // of the organs that are looked at
 constexpr double kWeightOfTools = 0.5;  // panels fade before tools
 
-/// The camera with which everything stands further right by that share of the picture's width.
-render::Camera moved(render::Camera camera, double share, double aspect) {
-  const Vec3 sight = camera.target - camera.eye, right = cross(sight, camera.up);
+/// The camera with which everything stands further right and up by these shares of the picture's width.
+render::Camera moved(render::Camera camera, double right, double up, double aspect) {
+  const Vec3 sight = camera.target - camera.eye, across = cross(sight, camera.up), above = cross(across, sight);
   const double width = 2 * norm(sight) * std::tan(camera.fov_deg * std::numbers::pi / 360) * aspect;
-  const Vec3 left = -share * width / norm(right) * right;
-  camera.eye += left, camera.target += left;
+  const Vec3 back = -width * (right / norm(across) * across + up / norm(above) * above);
+  camera.eye += back, camera.target += back;
   return camera;
 }
 
@@ -44,16 +45,19 @@ render::Camera beside_panels(const render::Camera& camera, const render::Picture
     const auto seen = [&](Vec3 point) { return render::project(moved, size.width, size.height, point); };
     const double organs = share_lost(shown.organs, [&](Vec3 point) {
       const render::Pixel p = seen(point);
-      return p.x < margin || p.x > size.width - margin || is_behind_panel(p);
+      return p.x < margin || p.x > size.width - margin || p.y < margin || p.y > size.height - margin ||
+             is_behind_panel(p);
     });
     return organs + kWeightOfTools * share_lost(shown.tools, [&](Vec3 point) { return is_behind_panel(seen(point)); });
   };
   render::Camera best = camera;
   double least = cost(camera);
-  for (int step = 1; step <= kSteps; ++step)
-    for (const int side : {1, -1}) {
-      const render::Camera there = moved(camera, side * step * kStep, aspect);
-      if (const double total = cost(there) + kLeastGain * step; total < least) best = there, least = total;
+  // Along a diagonal the way is as long as both of its sides.
+  for (const auto& [right, up] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}})
+    for (int step = 1; step <= kSteps; ++step) {
+      const render::Camera there = moved(camera, right * step * kStep, up * step * kStep, aspect);
+      const double way = kLeastGain * step * (std::abs(right) + std::abs(up));
+      if (const double total = cost(there) + way; total < least) best = there, least = total;
     }
   return best;
 }

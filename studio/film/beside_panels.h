@@ -15,8 +15,8 @@ struct Shown {
   std::span<const Vec3> tools;   ///< where they are used in the film
 };
 
-/// The camera moved sideways, without a turn, by as little as lets the panels and the picture's border hide the least
-/// of what is shown.
+/// The camera moved sideways, up or down, without a turn, by as little as lets the panels and the picture's border hide
+/// the least of what is shown.
 render::Camera beside_panels(const render::Camera& camera, const render::PictureSize& size,
                              std::span<const render::PixelBox> panels, const Shown& shown);
 

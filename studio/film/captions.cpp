@@ -60,9 +60,10 @@ Result<Done> add_largest(recordings::SessionReader& session, const session::Tick
         if (!is_blade && report.depth > depth) depth = report.depth, depth_tick = from + std::int64_t(i);
       }
   }
-  if (force_tick >= 0) moments.push_back({force_tick, "largest force: " + output::fixed(force, 2) + " N", Kind::force});
+  const std::string newtons = output::fixed(force, 2) + " N", millimetres = output::fixed(1000 * depth, 1) + " mm";
+  if (force_tick >= 0) moments.push_back({force_tick, "largest force: " + newtons, Kind::force, newtons});
   if (depth_tick >= 0)
-    moments.push_back({depth_tick, "deepest press: " + output::fixed(1000 * depth, 1) + " mm", Kind::deepest});
+    moments.push_back({depth_tick, "deepest press: " + millimetres, Kind::deepest, millimetres + " deep"});
   return Done{};
 }
 
@@ -90,6 +91,8 @@ std::vector<Moment> told_moments(const std::vector<Moment>& all, const std::stri
     const bool is_near = told.size() > 1 && moment.tick - told.back().tick < apart;
     if (!is_near)
       told.push_back(moment);
+    else if (!moment.largest.empty() && !told.back().largest.empty())  // a press is often deepest where it is strongest
+      told.back().text = "largest: " + told.back().largest + ", " + moment.largest;
     else if (moment.kind > told.back().kind)
       told.back() = moment;
   }

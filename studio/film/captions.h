@@ -17,6 +17,7 @@ struct Moment {
   std::int64_t tick = 0;
   std::string text;
   enum class Kind { title, contact, force, deepest, cut, loose, damage, inside_out } kind = Kind::title;
+  std::string largest = {};  ///< of force and deepest: how much it is
 };
 
 /// Everything that happens, in order of time. The largest force and depth are those of the whole session, or where it

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace ctpm::film {
 
@@ -9,7 +10,7 @@ Result<Ghost> ghost_of(recordings::SessionReader& session, const FrameTicks& tic
   constexpr std::int64_t kReadTicks = 10000;  // held in memory at a time
   constexpr double kPointEvery = 0.02;        // of the way [s]
   constexpr render::Colour kBlue{0.35, 0.7, 1};
-  Ghost ghost;
+  Ghost ghost{.session = std::filesystem::path(session.path()).stem().string(), .hand = {}, .way = {}};
   const std::int64_t every = std::max<std::int64_t>(1, std::llround(kPointEvery / session.start().model.tick));
   std::int64_t frame = 0;
   std::int32_t held = -1;

@@ -12,6 +12,7 @@ namespace ctpm::film {
 
 /// The tool of another session in the picture of the one that is shown: where it is in each frame, and its whole way.
 struct Ghost {
+  std::string session = {};       ///< its name
   std::vector<Hand> hand;         ///< the first one                  (frame_count)
   std::vector<render::Mark> way;  ///< of its tool's tip, one line for each time it was held
 };

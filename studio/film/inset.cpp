@@ -8,10 +8,13 @@
 namespace ctpm::film {
 namespace {
 
-constexpr double kShare = 0.27;  // of the picture's width and height
+constexpr double kShare = 0.235;                 // of the picture's width and height
+constexpr double kNarrow = 0.24, kBelow = 0.43;  // in half a pair: of its height, and of what stands below them
 constexpr double kCloser = 0.45;
 constexpr double kFieldOfView = 32;  // of a section [deg]
 constexpr int kFrame = 2;            // of a light line around it [pixels]
+
+bool is_narrow(const render::PictureSize& picture) { return picture.width < 1.4 * picture.height; }
 
 Vec3 unit(Vec3 v) { return norm(v) > 0 ? v / norm(v) : Vec3{0, -1, 0}; }
 
@@ -25,9 +28,15 @@ Result<Inset> Inset::create(Kind kind, const render::PictureSize& picture, const
 }
 
 render::PixelBox Inset::box(const render::PictureSize& picture, int place) {
-  const int width = std::max(16, int(kShare * picture.width)), height = std::max(16, int(kShare * picture.height));
+  const int width = std::max(16, int(kShare * picture.width)),
+            height = std::max(16, int((is_narrow(picture) ? kNarrow : kShare) * picture.height)),
+            below = is_narrow(picture) ? int(kBelow * picture.height) : 0;
   const int margin = std::max(4, picture.height / 60);
-  return {picture.width - width - margin, picture.height - (place + 1) * (height + margin), width, height};
+  return {picture.width - width - margin, picture.height - below - (place + 1) * (height + margin), width, height};
+}
+
+int Inset::taken_right(const render::PictureSize& picture) {
+  return is_narrow(picture) ? 0 : picture.width - box(picture, 0).x;
 }
 
 void Inset::add(render::Frame& picture, int place, const State& state, render::DrawOptions draw,

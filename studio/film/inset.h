@@ -30,6 +30,9 @@ class Inset {
   /// Where add() draws it, without its frame.
   static render::PixelBox box(const render::PictureSize& picture, int place);
 
+  /// How much of the picture's width they take at its lower border [pixels]; in half a pair they stand higher.
+  static int taken_right(const render::PictureSize& picture);
+
  private:
   Inset(Kind kind, std::unique_ptr<render::Renderer> renderer) : kind_(kind), renderer_(std::move(renderer)) {}
   Kind kind_;

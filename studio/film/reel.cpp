@@ -77,7 +77,10 @@ void make_room(Reel& reel, recordings::SessionReader& session, const render::Pic
   data.level = reel.level;
   data.history.push_back({});
   data.hand.is_blade = true;  // it has the longest name of a depth
+  for (const Moment& moment : reel.moments)
+    if (moment.text.size() > data.caption.size()) data.caption = moment.text;
   data.legend = render::legend_of(reel.film->model(), reel.look.draw);
+  data.taken_right = reel.taken_right;
   std::vector<render::PixelBox> panels = reel.overlay->standing_panels(data);
   for (std::size_t i = 0; i < reel.insets.size(); ++i) panels.push_back(Inset::box(size, int(i)));
   if (panels.empty()) return;
@@ -115,9 +118,12 @@ Result<Shot> Reel::shoot(std::int64_t frame) const {
   if (!shot) return shot;
   shot->overlay.level = level;
   shot->overlay.caption = words_at(moments, ticks.tick(frame), told);
-  shot->overlay.is_over = frame >= ticks.ended;
-  if (ghost) shot->ghost = ghost->hand[std::size_t(frame)];
-  if (shows_pace) shot->overlay.pace = shot->overlay.is_over ? 0 : speed * ticks.share(frame);
+  shot->overlay.stands = frame < ticks.begun    ? render::Stands::before_start
+                         : frame >= ticks.ended ? render::Stands::after_end
+                                                : render::Stands::no;
+  shot->overlay.taken_right = taken_right;
+  if (ghost) shot->ghost = ghost->hand[std::size_t(frame)], shot->overlay.ghost = ghost->session;
+  if (shows_pace) shot->overlay.pace = speed * ticks.share(frame);
   return shot;
 }
 
@@ -148,6 +154,7 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
     Result<Inset> inset = Inset::create(kind, {size.width, height}, reel.renderer->scene());
     if (!inset) return inset.errors();
     reel.insets.push_back(std::move(*inset));
+    reel.taken_right = Inset::taken_right({size.width, height});
   }
   reel.overlay = std::make_unique<render::Overlay>(size.width, height);
   const std::string title = reel.film->scene().name + ": " + std::filesystem::path(session.path()).stem().string();

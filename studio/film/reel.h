@@ -36,10 +36,12 @@ struct Reel {
   render::OverlayLevel level = render::OverlayLevel::full;
   std::optional<Ghost> ghost;
   std::vector<Inset> insets;
+  int taken_right = 0;  ///< by them [pixels]
   std::optional<render::Strip> strip;
   int strip_height = 0;  ///< [pixels]
 
-  /// The shot of a frame. A session that has ended keeps its last State and says so. Errors: see SessionFilm::shoot.
+  /// The shot of a frame. A session that has not begun or has ended stands still and says so. Errors: see
+  /// SessionFilm::shoot.
   Result<Shot> shoot(std::int64_t frame) const;
 };
 

@@ -100,7 +100,7 @@ Result<std::vector<FrameTicks>> by_knots(const Sessions& sessions, const std::ve
   if (knots.size() < 2) return by_the_clock(sessions, options);  // of no ticks
   const auto film = [](const Knot& knot) { return knot.film; };
   const auto of = [](std::size_t i) { return [i](const Knot& knot) { return knot.session[i]; }; };
-  const double begin = along(knots, double(shown->from) * first_tick, of(0), film);
+  const double begin = shown->from == 0 ? 0.0 : along(knots, double(shown->from) * first_tick, of(0), film);
   const double end = shown->to == sessions[0]->tick_count() ? knots.back().film
                                                             : along(knots, double(shown->to) * first_tick, of(0), film);
   const auto frames = std::int64_t(std::ceil((end - begin) / options.frame_s * (1 - 1e-12)));
@@ -117,10 +117,13 @@ Result<std::vector<FrameTicks>> by_knots(const Sessions& sessions, const std::ve
       const std::size_t next = next_knot(knots, time, film);
       return (own(knots[next]) - own(knots[next - 1])) / (knots[next].film - knots[next - 1].film);
     };
+    const auto waits = std::find_if(knots.begin() + 1, knots.end(), [&](const Knot& k) { return k.session[i] > 0; });
+    const auto begun = std::int64_t(std::floor((std::prev(waits)->film - begin) / options.frame_s * (1 + 1e-9)));
     const double over = along(knots, length_of(*sessions[i]) * (1 - 1e-9), of(i), film);
     const auto ended = std::int64_t(std::ceil((over - begin) / options.frame_s * (1 - 1e-9)));
     all.push_back({{tick_at(begin), tick_at(end)},
                    frames,
+                   std::clamp<std::int64_t>(begun, 0, frames),
                    std::clamp<std::int64_t>(ended, 0, frames),
                    [=](std::int64_t frame) { return tick_at(time_of(frame)); },
                    [=](std::int64_t frame) { return share_at(time_of(frame)); }});

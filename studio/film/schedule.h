@@ -15,6 +15,7 @@ namespace ctpm::film {
 struct FrameTicks {
   session::TickRange range;  ///< what is shown
   std::int64_t frame_count = 0;
+  std::int64_t begun = 0;                                ///< first frame in which the session has begun
   std::int64_t ended = 0;                                ///< first frame after the session's end, or frame_count
   std::function<std::int64_t(std::int64_t frame)> tick;  ///< never decreases; the State before it is shown
   std::function<double(std::int64_t frame)> share;       ///< of the film's speed with which the session goes on

@@ -19,6 +19,7 @@ FrameTicks ticks_of(const std::vector<std::int64_t>& ticks) {
   const std::int64_t first = std::max<std::int64_t>(0, ticks.front() - 1);
   return {{first, ticks.back()},
           count,
+          0,
           count,
           [ticks](std::int64_t frame) { return ticks[std::size_t(frame)]; },
           [](std::int64_t) { return 1.0; }};

@@ -41,7 +41,7 @@ std::vector<float> nearness_to_lips(const Surface& surface, const std::vector<st
   if (edges.empty()) return nearness;
   constexpr std::size_t kNone = std::size_t(-1);
   std::vector<std::size_t> nearest(is_lip.size(), kNone);
-  std::vector<double> distance(is_lip.size(), reach);
+  std::vector<double> distance(is_lip.size(), kLipsKnown * reach);
   for (std::size_t e = 0; e < edges.size(); ++e)
     for (const std::int32_t v : edges[e]) nearest[std::size_t(v)] = e, distance[std::size_t(v)] = 0;
   // What is nearest to a vertex is near to its neighbours; slivers lie in a row beside the edge.
@@ -61,8 +61,7 @@ std::vector<float> nearness_to_lips(const Surface& surface, const std::vector<st
       }
     }
   }
-  for (std::size_t v = 0; v < is_lip.size(); ++v)
-    if (nearest[v] != kNone) nearness[v] = float(1 - distance[v] / reach);
+  for (std::size_t v = 0; v < is_lip.size(); ++v) nearness[v] = float(1 - distance[v] / reach);
   return nearness;
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <span>
 
 #include "studio/output/number_text.h"
 
@@ -194,6 +195,9 @@ std::string counted(std::int64_t count, const std::string& thing) {
   return count == 0 ? "" : std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
+/// By Stands.
+constexpr std::array<const char*, 3> kNamesOfTime{"time", "not begun", "ended"};
+
 /// What the panel says, row by row; rows without a value are left out.
 std::vector<Fact> facts_of(const OverlayData& data) {
   const auto force_of = [&](const char* name, const HandLoad& hand) {
@@ -207,8 +211,10 @@ std::vector<Fact> facts_of(const OverlayData& data) {
                 output::fixed(1000 * hand.depth, 2) + " mm", is_too_deep(data, hand)};
   };
   return {{"model", data.model, false, true},
-          {data.is_over ? "ended" : "time", output::fixed(data.time, 3) + " s"},
-          {"speed", data.pace ? output::fixed(*data.pace, 2) + " x" : ""},
+          {kNamesOfTime[std::size_t(data.stands)], output::fixed(data.time, 3) + " s"},
+          {"speed", !data.pace                  ? ""
+                    : data.stands == Stands::no ? output::fixed(*data.pace, 2) + " x"
+                                                : "-"},
           {"clock behind", data.slip < 0.01 ? "" : output::fixed(data.slip, 2) + " s", true},
           {"tick", std::to_string(data.tick), false, true},
           force_of("force", data.hand),
@@ -282,7 +288,8 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
   const std::string title = is_short ? "" : large.shortened(data.title, std::min(px(440), most));
   const std::string session = small.shortened_inside(data.session, std::min(px(340), most - label));
   int inner = px(300);
-  if (!is_narrow && !session.empty()) inner = std::max(inner, label + small.width(session));
+  const std::string ghost = is_narrow ? "" : small.shortened_inside(data.ghost, std::min(px(340), most - label));
+  if (!is_narrow) inner = std::max({inner, label + small.width(session), label + small.width(ghost)});
   inner = std::max(inner, large.width(title));
   int x = margin + pad, y = margin + pad;
   if (is_narrow && !session.empty()) {
@@ -292,6 +299,10 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
   } else if (!is_narrow) {
     if (!title.empty()) plan.lines.push_back(line(large, title, x, y, kWhite)), y += px(38);
     if (!session.empty()) add_fact({"session", session}, x, y, inner, plan), y += step;
+    if (!ghost.empty()) {
+      add_fact({"in blue", ghost}, x, y, inner, plan), y += step;
+      for (Line& line : std::span(plan.lines).last(2)) line.ink = kBlue;
+    }
   }
   const int rows = int(facts.size()) * step + pad - px(7);
   if (is_narrow) x = width - margin - pad - inner, y = height - margin - rows;
@@ -333,7 +344,7 @@ void Overlay::Parts::plan_legend(const OverlayData& data, Plan& plan) {
   if (data.legend.title.empty()) return;
   const int pad = px(16), w = px(250), h = px(98);
   const int bottom = is_narrow ? plan.facts.y - px(10) : height - px(20) - px(43) - px(10);
-  plan.legend = {width - px(20) - w, bottom - h, w, h};
+  plan.legend = {width - px(20) - w - data.taken_right, bottom - h, w, h};
   const int x = plan.legend.x + pad, inner = w - 2 * pad, y = plan.legend.y + px(12);
   plan.lines.push_back(line(small, small.shortened(data.legend.title, inner), x, y, kGrey));
   plan.bar = {x, y + px(30), inner, px(16)};
@@ -350,7 +361,8 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
   const auto banner = [&](const std::string& text, int y, bool is_right, const Ink& ink) {
     const std::string shown = small.shortened(text, std::min(px(640), width - 2 * margin - 2 * pad));
     const int w = small.width(shown) + 2 * pad;
-    const PixelBox box{is_right ? width - margin - w : margin, y, w, h};
+    const int right = width - margin - (y > height / 2 ? data.taken_right : 0);
+    const PixelBox box{is_right ? std::max(margin, right - w) : margin, y, w, h};
     plan.lines.push_back(line(small, shown, box.x + pad, y + px(13), ink));
     return box;
   };
@@ -373,9 +385,12 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
   // Between the plot and the legend and above the warning; in the middle of the picture where it fits there.
   const bool is_free = is_narrow || is_alone;
   const int left = is_free ? px(5) : plan.plot.height > 0 ? plan.plot.x + plan.plot.width + px(10) : margin;
-  const int right = is_free ? width - px(5) : plan.legend.height > 0 ? plan.legend.x - px(10) : width - margin;
-  // A still has nothing else to make room for.
-  const std::vector<std::string> texts = large.in_lines(data.caption, right - left - 2 * pad, is_alone ? 2 : 1);
+  const int right = is_free                  ? width - px(5)
+                    : plan.legend.height > 0 ? plan.legend.x - px(10)
+                                             : width - margin - data.taken_right;
+  // A still has nothing else to make room for; beside small pictures there is less room.
+  const std::size_t most = is_alone || data.taken_right > 0 ? 2 : 1;
+  const std::vector<std::string> texts = large.in_lines(data.caption, right - left - 2 * pad, most);
   int wide = 0;
   for (const std::string& text : texts) wide = std::max(wide, large.width(text) + 2 * pad);
   const int high = px(23) + 2 * px(13) + px(32) * int(texts.size() - 1);
@@ -473,7 +488,7 @@ std::vector<PlacedText> Overlay::layout(const OverlayData& data) {
 std::vector<PixelBox> Overlay::standing_panels(const OverlayData& data) {
   const Plan plan = parts_->plan(data);
   std::vector<PixelBox> panels;
-  for (const PixelBox& box : {plan.names, plan.facts, plan.plot, plan.verdict, plan.legend})
+  for (const PixelBox& box : {plan.names, plan.facts, plan.plot, plan.verdict, plan.legend, plan.caption})
     if (box.height > 0) panels.push_back(box);
   return panels;
 }

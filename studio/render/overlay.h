@@ -25,6 +25,9 @@ struct HandLoad {
   bool is_blade = false;  ///< the depth is that of the cut, which has no limit
 };
 
+/// Whether a session stands still while the one beside it goes on.
+enum class Stands { no, before_start, after_end };
+
 enum class VerdictTone { none, good, bad };
 
 /// How much the overlay says. A bad verdict is shown at every level.
@@ -32,11 +35,12 @@ enum class OverlayLevel { none, caption, small, full };
 
 /// The content of the overlay. Empty texts are left out; long ones are shortened with an ellipsis.
 struct OverlayData {
-  std::string title;           ///< of the scene
-  std::string model;           ///< structure of the tissue: "CTPM"
-  std::string session;         ///< which recording it is, if there may be several
-  double time = 0;             ///< [s]
-  bool is_over = false;        ///< the session has ended at `time`
+  std::string title;    ///< of the scene
+  std::string model;    ///< structure of the tissue: "CTPM"
+  std::string session;  ///< which recording it is, if there may be several
+  std::string ghost;    ///< whose tool is shown through; not told in a narrow picture
+  double time = 0;      ///< [s]
+  Stands stands = Stands::no;
   std::optional<double> pace;  ///< time of the session against that of the film; not shown if unset
   std::int64_t tick = 0;
   OverlayLevel level = OverlayLevel::full;
@@ -56,6 +60,7 @@ struct OverlayData {
   double plot_span = 5;             ///< time that the plot covers, up to now [s], > 0
   double least_top_force = 0.1;     ///< smallest upper end of the plot's axis [N], > 0
   std::vector<Pixel> tools;         ///< points of the tools: panels near them fade
+  int taken_right = 0;              ///< width at the lower right where small pictures stand [pixels]
 };
 
 /// The next round number at or above `value`, at least 1e-3: 1, 2 or 5 times a power of ten.
@@ -95,7 +100,7 @@ class Overlay {
   /// All texts of draw() and their rectangles, without drawing.
   std::vector<PlacedText> layout(const OverlayData& data);
 
-  /// The panels of draw() that are there whatever happens, without drawing: no warning and no caption.
+  /// The panels of draw() but the warning, without drawing.
   std::vector<PixelBox> standing_panels(const OverlayData& data);
 
  private:

@@ -52,7 +52,7 @@ figure:target { outline: 3px solid #c0392b; outline-offset: 4px; }
   td, td.n { display: block; border: 0; padding: 0; min-width: 0; text-align: left; white-space: normal; order: 2; overflow-wrap: anywhere; }
   td:empty { display: none; } td:first-child { order: 0; font-weight: 600; flex: 1 0 60%; } td.verdict-cell { order: 1; }
   tr::after { content: ""; order: 1; flex: 1 0 100%; }
-  td[data-title]:not(:first-child):not(.verdict-cell)::before { content: attr(data-title) " "; color: #666; }
+  td[data-title]:not(:first-child):not(.verdict-cell)::before, td.n[data-title]:first-child::before { content: attr(data-title) " "; color: #666; }
 }
 )";
 

@@ -70,7 +70,8 @@ reports::Table refusals(const std::vector<StabilityRow>& rows) {
 
 std::vector<reports::Plot> plots_of(const StabilityRun& run) {
   reports::Plot distance{.title = "furthest sphere", .x_title = "time [s]", .y_title = "distance from rest [mm]"};
-  reports::Plot energy{.title = "energy", .x_title = "time [s]", .y_title = "of motion, springs and gravity [J]"};
+  reports::Plot energy{
+      .title = "energy of motion, springs and gravity", .x_title = "time [s]", .y_title = "energy [J]"};
   distance.series.push_back(run.distance), energy.series.push_back(run.energy);
   distance.height = energy.height = 260;
   return {distance, energy};

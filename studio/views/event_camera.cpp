@@ -18,25 +18,36 @@ namespace {
 
 using render::Camera;
 
+/// An event where a camera can look for it: all of it is green, and everything else is grey.
+struct Subject {
+  render::SceneView scene;
+  render::View view = render::View::surface;
+  std::vector<Vec3> points;  ///< its places [m]; empty: there is no such event
+  std::vector<Vec3> organs;  ///< of those that it happens to, at rest [m]
+};
+
 /// Walls farther from the organs at rest than this part of their size are those of pieces that fell or flew away.
 constexpr double kGone = 0.5;
 
-/// Where the walls of all cuts are [m], without those of pieces that are gone.
-std::vector<Vec3> walls_of(const render::SceneView& scene, const State& state) {
+void append(std::vector<Vec3>& all, const std::vector<Vec3>& more) { all.insert(all.end(), more.begin(), more.end()); }
+
+/// Finds where the walls of all cuts are, without those of pieces that are gone.
+void find_walls(const render::SceneView& scene, const State& state, Subject& subject) {
   const Model& model = *scene.model;
   const render::Bounds bounds = render::rest_bounds(scene);
   const Box around = Box(bounds.min, bounds.max).grown(kGone * bounds.diagonal());
-  std::vector<Vec3> walls, position;
+  std::vector<Vec3> position;
   contact::DrawnSurfaces drawn(model);
   for (std::size_t organ = 0; organ < model.surfaces.size(); ++organ) {
     if (model.surfaces[organ].triangle.empty()) continue;
     render::CutSurface cut(model, organ);
     cut.update(state);
     drawn.place(organ, cut.surface(), state, position);
-    std::copy_if(position.begin() + std::ptrdiff_t(cut.outer_vertex_count()), position.end(), std::back_inserter(walls),
-                 [&](Vec3 p) { return around.meets(Box(p)); });
+    const std::size_t before = subject.points.size();
+    std::copy_if(position.begin() + std::ptrdiff_t(cut.outer_vertex_count()), position.end(),
+                 std::back_inserter(subject.points), [&](Vec3 p) { return around.meets(Box(p)); });
+    if (subject.points.size() > before) append(subject.organs, model.surfaces[organ].vertex);
   }
-  return walls;
 }
 
 /// Around the organs and above the ground, and the usual direction first.
@@ -55,21 +66,14 @@ std::vector<Vec3> directions(const Model& model, const Camera& usual) {
   return found;
 }
 
-/// An event where a camera can look for it: all of it is green, and everything else is grey.
-struct Subject {
-  render::SceneView scene;
-  render::View view = render::View::surface;
-  std::vector<Vec3> points;  ///< its places [m]; empty: there is no such event
-};
-
 constexpr render::Colour kGrey{0.25, 0.25, 0.25}, kGreen{0, 0.9, 0};
 
 /// Walls and lips of cuts.
 Subject wound_of(const render::SceneView& scene, const State& state) {
-  Subject subject{{scene.model, {}, {}}, render::View::surface, {}};
+  Subject subject{{scene.model, {}, {}}, render::View::surface, {}, {}};
   if (state.swept.size() == 0) return subject;
   for (const OrganRange& organ : scene.model->organs) subject.scene.looks.push_back({organ.name, kGrey, kGreen, 0, {}});
-  subject.points = walls_of(scene, state);
+  find_walls(scene, state, subject);
   return subject;
 }
 
@@ -77,24 +81,33 @@ Subject wound_of(const render::SceneView& scene, const State& state) {
 Subject press_of(const render::SceneView& scene, const State& state) {
   constexpr double kAround = 1.5;  // spacings of the organ beyond a tool's surface
   const Model& model = *scene.model;
-  Subject subject{{&model, {}, {}}, render::View::spheres, {}};
+  Subject subject{{&model, {}, {}}, render::View::spheres, {}, {}};
   subject.scene.sphere_colours.assign(state.position.size(), kGrey);
   for (std::size_t number = 0; number < kMostHands; ++number) {
     const Hand& hand = state.last_inputs.hand(number);
     if (hand.tool < 0 || model.tools[std::size_t(hand.tool)].kind == ToolKind::scalpel) continue;
-    for (const OrganRange& organ : model.organs)
+    for (std::size_t o = 0; o < model.organs.size(); ++o) {
+      const OrganRange& organ = model.organs[o];
+      const std::size_t before = subject.points.size();
       for (auto i = std::size_t(organ.first); i < std::size_t(organ.first + organ.count); ++i) {
         const double reach = model.tools[std::size_t(hand.tool)].radius + kAround * organ.spacing;
         if (model.layer[i] != 1 || norm(state.position[i] - hand.position) > reach) continue;
         subject.scene.sphere_colours[i] = kGreen;
         subject.points.push_back(state.position[i]);
       }
+      if (subject.points.size() > before) append(subject.organs, model.surfaces[o].vertex);
+    }
   }
   return subject;
 }
 
-/// Pixels that show the subject.
-int visible(render::Renderer& renderer, const Subject& subject, const State& state, const Camera& camera) {
+/// The area of the subject that is seen from the camera's eye, whose picture it fills as far as it may [m^2 of the
+/// plane across the sight, times a constant].
+double visible(render::Renderer& renderer, const Subject& subject, const State& state, Camera camera) {
+  const render::Bounds bounds = render::bounds_of(subject.points);
+  const double distance = norm(camera.eye - camera.target), radius = 0.5 * bounds.diagonal();
+  const double high = std::tan(camera.fov_deg * std::numbers::pi / 360), needed = 1.2 * radius / distance;
+  camera.fov_deg = std::atan(std::min(high, needed)) * 360 / std::numbers::pi;
   render::DrawOptions options;
   options.camera = camera, options.view = subject.view, options.show_ground = false;
   options.show_tool = subject.view == render::View::spheres;  // a blade that stays in its cut covers it
@@ -102,7 +115,19 @@ int visible(render::Renderer& renderer, const Subject& subject, const State& sta
   int count = 0;
   for (std::size_t i = 0; i < frame.rgb.size(); i += 3)
     count += frame.rgb[i + 1] > frame.rgb[i] + 25 && frame.rgb[i + 1] > frame.rgb[i + 2] + 25;
-  return count;
+  const double side = distance * std::min(high, needed);
+  return count * side * side;
+}
+
+/// The part of the points that is in the picture.
+double share_in_picture(const Camera& camera, double aspect, const std::vector<Vec3>& points) {
+  constexpr int kHigh = 1000;
+  const int wide = int(aspect * kHigh);
+  const auto is_in = [&](Vec3 point) {
+    const render::Pixel p = render::project(camera, wide, kHigh, point);
+    return p.depth > 0 && p.x >= 0 && p.x < wide && p.y >= 0 && p.y < kHigh;
+  };
+  return points.empty() ? 1 : double(std::count_if(points.begin(), points.end(), is_in)) / double(points.size());
 }
 
 /// The event, and of the organs what lies around it: at least a part of their size.
@@ -123,20 +148,31 @@ Result<std::optional<Camera>> event_camera(Event event, const render::SceneView&
                                            const Camera& usual, double aspect) {
   constexpr int kWidth = 224, kHeight = 126;
   constexpr double kUsualCounts = 0.5;  // what is seen from the other side counts so much less
+  constexpr int kWhole = 4;             // power of the part of the organ in the picture
+  constexpr double kFarther = 1.3;      // so much farther it stands where that shows the whole organ
   const Subject subject = event == Event::wound ? wound_of(scene, state) : press_of(scene, state);
   if (subject.points.empty()) return std::optional<Camera>();
   Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(kWidth, kHeight, subject.scene);
   if (!renderer) return renderer.errors();
   const std::vector<Vec3> ways = directions(*scene.model, usual), points = framed(scene, subject.points, aspect);
+  std::vector<Vec3> whole = points;
+  append(whole, subject.organs);
   const Vec3 up = render::up_of(*scene.model);
   double best = 0;
   std::optional<Camera> found;
   for (const Vec3& way : ways) {
-    const Camera whole = render::fitted_camera(scene, way, up, usual.fov_deg, double(kWidth) / kHeight);
+    const auto fitted = [&](const std::vector<Vec3>& shown) {
+      return render::fit_camera(std::span<const Vec3>(shown), way, up, usual.fov_deg, aspect);
+    };
+    Camera camera = fitted(points);
+    if (const Camera farther = fitted(whole);
+        norm(farther.eye - farther.target) < kFarther * norm(camera.eye - camera.target))
+      camera = farther;
     const double likeness = 0.5 + 0.5 * dot(way, ways.front());
-    const double score = visible(**renderer, subject, state, whole) * (1 - kUsualCounts * (1 - likeness));
-    if (score > best)
-      best = score, found = render::fit_camera(std::span<const Vec3>(points), way, up, usual.fov_deg, aspect);
+    const double in_picture = share_in_picture(camera, aspect, subject.organs);
+    const double score = visible(**renderer, subject, state, camera) * (1 - kUsualCounts * (1 - likeness)) *
+                         std::pow(in_picture, kWhole);
+    if (score > best) best = score, found = camera;
   }
   return found;
 }

@@ -1,4 +1,5 @@
 #include "studio/film/beside_panels.h"
+#include "studio/film/inset.h"
 
 #include <gtest/gtest.h>
 
@@ -58,6 +59,15 @@ TEST_F(BesidePanels, TheOrganComesOutFromBehindAPanelWithoutATurn) {
   }
 }
 
+TEST_F(BesidePanels, ItRisesAboveAPanelAlongTheWholeBottom) {
+  const std::vector<Vec3> organ = plate(-0.08, 0.08);
+  const std::vector<render::PixelBox> panels{{20, 340, 1240, 360}};
+  const auto found = film::beside_panels(camera_, kSize, panels, {organ, {}});
+  EXPECT_GT(hidden(camera_, organ, panels), 100);
+  EXPECT_EQ(hidden(found, organ, panels), 0);
+  EXPECT_NEAR(norm((found.target - found.eye) - (camera_.target - camera_.eye)), 0, 1e-12);
+}
+
 TEST_F(BesidePanels, ToolsCountToo) {
   const std::vector<Vec3> organ = plate(-0.03, 0.03), tools = plate(-0.12, -0.10);
   const std::vector<render::PixelBox> panels{{20, 20, 300, 680}};
@@ -71,6 +81,21 @@ TEST_F(BesidePanels, WhatIsTooLargeToBeFreeIsNotPushedOutOfThePicture) {
   const std::vector<render::PixelBox> panels{{20, 20, 300, 300}};
   const auto found = film::beside_panels(camera_, kSize, panels, {organ, {}});
   EXPECT_LE(hidden(found, organ, panels), hidden(camera_, organ, panels));
+}
+
+TEST(Insets, HideNoWordsOfTheOverlay) {
+  for (const render::PictureSize& size : {render::PictureSize{1280, 720}, {1920, 1080}, {640, 720}, {960, 1080}}) {
+    render::OverlayData data;
+    data.title = "liver", data.model = "CTPM", data.session = "liver-press-clumsy", data.pace = 1;
+    data.hand = {3, 0.018}, data.damage_depth = 0.012, data.verdict = "replay same as recorded";
+    data.caption = "tissue damage: deeper than 12 mm", data.history = {{0, 3}};
+    data.taken_right = film::Inset::taken_right(size);
+    for (const render::PlacedText& text : render::Overlay(size.width, size.height).layout(data))
+      for (const int place : {0, 1}) {
+        EXPECT_FALSE(film::Inset::box(size, place).overlaps(text.box)) << text.text << " " << size.width;
+        EXPECT_FALSE(text.text.ends_with("...")) << text.text;
+      }
+  }
 }
 
 }  // namespace

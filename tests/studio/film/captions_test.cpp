@@ -33,11 +33,27 @@ TEST(Captions, APartBeginsWithTheTitleAndTellsOnlyOfWhatHappensInIt) {
   EXPECT_EQ(film::words_at(told, 4400, 2500), "cuts");
 }
 
+TEST(Captions, OfTwoThatAreNearTheGraverIsToldAndBothOfTheLargest) {
+  const auto told = [](const std::vector<film::Moment>& all) {
+    std::vector<std::string> texts;
+    for (const film::Moment& moment : film::told_moments(all, "title", 1e-3, 0)) texts.push_back(moment.text);
+    return texts;
+  };
+  using Texts = std::vector<std::string>;
+  EXPECT_EQ(told({{900, "strong", Kind::force, "4 N"}, {1200, "deep", Kind::deepest, "9 mm"}}),
+            (Texts{"title", "largest: 4 N, 9 mm"}));
+  EXPECT_EQ(told({{900, "deep", Kind::deepest}, {1200, "harm", Kind::damage}}), (Texts{"title", "harm"}));
+  EXPECT_EQ(told({{900, "touch", Kind::contact}, {1200, "cut", Kind::cut}, {1300, "strong", Kind::force}}),
+            (Texts{"title", "cut"}));
+  EXPECT_EQ(told({{900, "strong", Kind::force, "4 N"}, {1700, "deep", Kind::deepest, "9 mm"}}),
+            (Texts{"title", "strong", "deep"}));
+}
+
 TEST(Captions, TrackAndPictureSayTheSameInEveryFrame) {
   const std::vector<film::Moment> moments{
       {0, "title", Kind::title}, {333, "one", Kind::cut}, {1500, "two", Kind::cut}, {9999, "beyond", Kind::cut}};
   // Slow in the middle, as where two sessions are matched.
-  film::FrameTicks ticks{{0, 2000}, 90, 90, {}, {}};
+  film::FrameTicks ticks{{0, 2000}, 90, 0, 90, {}, {}};
   ticks.tick = [](std::int64_t frame) {
     return frame < 20   ? 33 * frame
            : frame < 60 ? 660 + 5 * (frame - 20)

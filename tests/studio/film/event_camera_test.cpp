@@ -10,6 +10,7 @@
 #include "studio/render/renderer.h"
 #include "studio/views/look.h"
 #include "studio/views/view_of_scene.h"
+#include "tests/studio/render/scene.h"
 
 namespace ctpm {
 namespace {
@@ -164,6 +165,33 @@ TEST_F(WoundCamera, IsTheSameEveryTimeAndTheScenesWhereNothingIsCut) {
   EXPECT_NE(to_string(none.errors()[0]).find("nothing is cut"), std::string::npos);
 }
 
+/// The line of sight of the camera on a ball that presses the first organ from above.
+Vec3 sight_of_press(const Model& model) {
+  State state = rest_state(model);
+  state.last_inputs.tool = 0, state.last_inputs.position = {0, 0, 0.03};
+  const render::SceneView view{&model, {}, {}};
+  const auto camera =
+      views::event_camera(views::Event::press, view, state, render::default_camera(view, kAspect), kAspect);
+  EXPECT_TRUE(camera && *camera);
+  const Vec3 sight = (*camera)->target - (*camera)->eye;
+  return sight / norm(sight);
+}
+
+TEST(EventCamera, AnOrganAsideDoesNotTurnIt) {
+  const FilledOrgan blob =
+      render_test::fill(render_test::blob, render_test::star_surface(render_test::blob, 40), 0.004);
+  const auto alone = render_test::make_scene(blob), pair = render_test::make_scene(blob);
+  FilledOrgan aside = blob;
+  const Vec3 away{0.3, 0, 0};
+  for (auto* points : {&aside.centre, &aside.surface.vertex})
+    for (Vec3& p : *points) p = p + away;
+  network::OrganSettings settings;
+  settings.name = "other", settings.material = {15e6, 15e6, 20e6, 5e6, 1060, 1, std::numbers::pi * 4e-6, 0.012};
+  ASSERT_TRUE(network::add_organ(pair->model, aside, settings));
+  constexpr double kAStep = 0.9;  // cosine of somewhat less than the 30 degrees between directions
+  EXPECT_GT(dot(sight_of_press(alone->model), sight_of_press(pair->model)), kAStep);
+}
+
 /// Pixels that show the pressed place, of which the spheres are green.
 int pixels_of(const Model& model, const State& state, Vec3 at, const render::Camera& camera) {
   render::SceneView plain{&model, {}, std::vector<render::Colour>(state.position.size(), kGrey)};
@@ -198,6 +226,29 @@ TEST(PressCamera, SeesThePressedTissueOfEachSession) {
     EXPECT_GT(2 * seen(*chosen), 3 * seen(*front)) << name;
     const render::Pixel at = render::project(chosen->draw.camera, 1280, 720, told->last_inputs.position);
     EXPECT_TRUE(at.x > 400 && at.x < 880 && at.y > 150 && at.y < 570) << at.x << ", " << at.y;
+  }
+}
+
+TEST(EventCamera, TheWholeOrganIsInThePictureOfEachSession) {
+  for (const char* name : {"liver-press-expert", "liver-press-clumsy", "kidney-cut-expert", "kidney-cut-clumsy"}) {
+    auto reader =
+        recordings::SessionReader::open(std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/" + name + ".ctpm");
+    ASSERT_TRUE(reader);
+    const session::TickRange whole{0, reader->tick_count()};
+    const auto all = film::all_moments(*reader, whole);
+    ASSERT_TRUE(all);
+    const auto told = film::telling_state(*reader, whole, *all);
+    const auto text = scenes::read_scene(reader->start().scene_text, "scene");
+    ASSERT_TRUE(told && text);
+    const render::SceneView view = views::view_of(text->spec, reader->start().model);
+    const auto chosen = views::find_look({}, text->spec, view, kAspect, &*told);
+    ASSERT_TRUE(chosen);
+    int in = 0, points = 0;
+    for (const Vec3& point : render::rest_points(view)) {
+      const render::Pixel at = render::project(chosen->draw.camera, 1280, 720, point);
+      ++points, in += at.x > 0 && at.x < 1280 && at.y > 0 && at.y < 720;
+    }
+    EXPECT_GT(in, 0.98 * points) << name;
   }
 }
 

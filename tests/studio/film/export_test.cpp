@@ -263,23 +263,26 @@ TEST_F(Export, BesideShowsTwoSessionsInStep) {
 
 TEST_F(Export, BesideKeepsTheSecondsThatItIsAheadByHand) {
   record("short.ctpm", "0.6");
-  const auto export_ahead = [&](const char* seconds) {
+  const auto export_ahead = [&](const char* seconds, const char* from, const char* to) {
+    fs::remove_all(folder_.path() / "both");
     return run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--fps", "20", "--align", seconds,
-                     "--from-s", "0.3", "--to-s", "0.4"},
+                     "--from-s", from, "--to-s", to},
                     folder_.path());
   };
+  const render_test::GlyphReader reader(640, 720);
+  const auto says = [&](int half, const char* label) {
+    return reader.read_after(half_of(picture("both", 2), half), label);
+  };
   for (const auto& [seconds, second] : {std::pair{"0.15", 0.55}, {"-0.25", 0.15}}) {
-    const auto both = export_ahead(seconds);
+    const auto both = export_ahead(seconds, "0.3", "0.4");
     ASSERT_EQ(both.code, 0) << both.err;
-    const render::Frame last = picture("both", 2);
-    const render_test::GlyphReader reader(640, 720);
-    for (int half = 0; half < 2; ++half) {
-      const render::Frame part = half_of(last, half);
-      EXPECT_NEAR(std::atof(reader.read_after(part, "time").c_str()), half == 0 ? 0.4 : second, 1.1e-3) << seconds;
-    }
-    fs::remove_all(folder_.path() / "both");
+    for (int half = 0; half < 2; ++half)
+      EXPECT_NEAR(std::atof(says(half, "time").c_str()), half == 0 ? 0.4 : second, 1.1e-3) << seconds;
   }
-  const auto apart = export_ahead("0.6");
+  ASSERT_EQ(export_ahead("-0.25", "0", "0.1").code, 0);
+  EXPECT_EQ(says(1, "not begun"), "0.000 s");
+  EXPECT_EQ(says(1, "speed") + says(0, "speed"), "-1.00 x") << "what has not begun has no speed";
+  const auto apart = export_ahead("0.6", "0.3", "0.4");
   EXPECT_EQ(apart.code, 2);
   EXPECT_TRUE(holds(apart.err, "--align: error: got 0.600 s, and the sessions have no moment in common")) << apart.err;
 }

@@ -120,11 +120,11 @@ TEST_F(MoreExports, InsetsShowTheToolFromNearAndTheTissueOpenedAtIt) {
       }
     return count;
   };
-  EXPECT_GT(differing(plain, near, 350, 195, 476, 266), 5000);
-  EXPECT_GT(differing(near, section, 350, 195, 476, 266), 2000) << "they show different things";
+  EXPECT_GT(differing(plain, near, 364, 203, 476, 266), 5000);
+  EXPECT_GT(differing(near, section, 364, 203, 476, 266), 2000) << "they show different things";
   EXPECT_EQ(differing(plain, near, 0, 0, 340, 270), 0);
-  EXPECT_EQ(differing(near, both, 350, 195, 476, 266), 0);
-  EXPECT_GT(differing(near, both, 350, 121, 476, 188), 5000);
+  EXPECT_EQ(differing(near, both, 364, 203, 476, 266), 0);
+  EXPECT_GT(differing(near, both, 364, 136, 476, 199), 5000);
   const auto wrong = export_to("b.png", {kExpert}, {"--at-s", "1", "--inset", "far"});
   EXPECT_EQ(wrong.code, 2);
   EXPECT_TRUE(holds(wrong.err, "--inset: error: got 'far', must be near or section")) << wrong.err;

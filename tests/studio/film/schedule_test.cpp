@@ -70,6 +70,19 @@ TEST_F(Schedule, ByHandTheOneThatIsOverFirstSaysSo) {
   for (const film::FrameTicks& ticks : by("path")) EXPECT_EQ(ticks.ended, ticks.frame_count);
 }
 
+TEST_F(Schedule, ByHandTheOneThatBeginsLaterSaysSoUntilThen) {
+  for (const auto& [word, late] : {std::pair{"2", 0u}, {"-2", 1u}}) {
+    const auto ticks = by(word);
+    EXPECT_NEAR(double(ticks[late].begun) * kFrame, 2, kFrame) << word;
+    EXPECT_EQ(ticks[late].tick(ticks[late].begun - 1), 0) << word;
+    EXPECT_GT(ticks[late].tick(ticks[late].begun), 0) << word;
+    EXPECT_EQ(ticks[1 - late].begun, 0) << word;
+    EXPECT_EQ(by(word, {.from_s = 2.5, .to_s = {}})[late].begun, 0) << "a part in which both go on";
+  }
+  for (const char* word : {"path", "contact", "clock"})
+    for (const film::FrameTicks& ticks : by(word)) EXPECT_EQ(ticks.begun, 0) << word;
+}
+
 TEST_F(Schedule, NothingIsLeftOutNothingIsHurriedAndNoHalfStandsStillForLong) {
   for (const char* word : {"path", "contact", "cut", ""}) {
     const auto ticks = by(word);

@@ -224,7 +224,7 @@ TEST(CutSurface, HowNearALipIsDoesNotDependOnTheTrianglesBesideIt) {
   double worst = 0;
   int between = 0;
   for (std::size_t v = 0; v < cut_surface.outer_vertex_count(); ++v) {
-    double least = kReach;
+    double least = render::kLipsKnown * kReach;
     for (const Vec3& p : lip) least = std::min(least, norm(p - surface.vertex[v]));
     // Between two vertices of the edge it may be nearer than either.
     worst = std::max(worst, std::abs(nearness[v] - (1 - least / kReach)));
@@ -232,6 +232,19 @@ TEST(CutSurface, HowNearALipIsDoesNotDependOnTheTrianglesBesideIt) {
   }
   EXPECT_LT(worst, 0.12);
   EXPECT_GT(between, 100) << "triangles beside the cut are smaller than the reach";
+  // Within a triangle too, however far it goes beyond the reach, so that what oozes has no spikes.
+  double off = 0;
+  for (std::size_t t = 0; t < cut_surface.outer_triangle_count(); ++t) {
+    const auto& corner = surface.triangle[t];
+    Vec3 middle{};
+    double read = 0;
+    for (const std::int32_t v : corner)
+      middle += (1.0 / 3) * surface.vertex[std::size_t(v)], read += nearness[std::size_t(v)] / 3;
+    double least = render::kLipsKnown * kReach;
+    for (const Vec3& p : lip) least = std::min(least, norm(p - middle));
+    if (least < kReach) off = std::max(off, read - (1 - least / kReach));
+  }
+  EXPECT_LT(off, 0.25);
 }
 
 /// Outward normal of the blob at a place on it.

@@ -72,6 +72,37 @@ TEST(Overlay, ACaptionOfAStillThatIsTooLongForALineHasTwo) {
   for (const render::PlacedText& text : texts) EXPECT_TRUE(text.box.x >= 0 && text.box.x + text.box.width <= 320);
 }
 
+TEST(Overlay, WhatStandsBelowLeavesTheCornerToSmallPictures) {
+  render::OverlayData data = full_data();
+  data.worst.depth = 0.0186, data.caption = "tissue damage: deeper than 12 mm", data.taken_right = 360;
+  int warnings = 0;
+  for (const render::PlacedText& text : render::Overlay(1280, 720).layout(data)) {
+    if (text.box.y < 360) continue;
+    EXPECT_LE(text.box.x + text.box.width, 1280 - 360) << text.text;
+    warnings += text.text == "TISSUE DAMAGE: 18.6 mm, limit 12.0 mm";
+  }
+  EXPECT_EQ(warnings, 1) << "and none is cut";
+}
+
+TEST(Overlay, AGhostIsNamedInItsColour) {
+  render::OverlayData data = full_data();
+  data.ghost = "kidney-cut-expert";
+  render::Frame frame = render::blank_frame(1280, 720, 120, 130, 140);
+  render::Overlay(1280, 720).draw(frame, data);
+  int named = 0, blue = 0;
+  for (const render::PlacedText& text : render::Overlay(1280, 720).layout(data)) {
+    if (text.text != data.ghost) continue;
+    ++named;
+    for (int y = text.box.y; y < text.box.y + text.box.height; ++y)
+      for (int x = text.box.x; x < text.box.x + text.box.width; ++x) {
+        const std::uint8_t* p = &frame.rgb[std::size_t(y * 1280 + x) * 3];
+        blue += p[2] > p[0] + 80;
+      }
+  }
+  EXPECT_EQ(named, 1);
+  EXPECT_GT(blue, 200);
+}
+
 TEST(Overlay, TimeThatTheSessionLostIsShown) {
   render::Overlay overlay(1280, 720);
   render::OverlayData data = full_data();

@@ -105,7 +105,10 @@ TEST_F(Page, OnASmallScreenNothingIsOutOfSight) {
   reports::Table narrow;
   narrow.columns = {{"recipe", "recipe"}, {"verdict", "verdict"}, {"met", "met"}};
   narrow.rows = {{std::string("The drawn surface under a ball, and a small ball"), reports::ReportVerdict::met, 3.0}};
-  report.add_table(table), report.add_table(narrow);
+  reports::Table numbers;
+  numbers.columns = {{"radius_mm", "r [mm]"}, {"spheres", "spheres"}};
+  numbers.rows = {{4.0, 225.0}};
+  report.add_table(table), report.add_table(narrow), report.add_table(numbers);
   std::string page = report.html(), quoted;
   for (const char c : page) quoted += c == '"' ? "&quot;" : c == '&' ? "&amp;" : std::string(1, c);
   const std::string after =
@@ -118,6 +121,7 @@ TEST_F(Page, OnASmallScreenNothingIsOutOfSight) {
       const meet = (a, b) => a.right > b.left && b.right > a.left && a.bottom > b.top + 3 && b.bottom > a.top + 3;
       document.body.dataset.cut = [...inner.querySelectorAll("svg")].flatMap(svg => texts(svg).filter((one, i, all) =>
         one.box.right > svg.getBoundingClientRect().right || all.some((other, j) => j != i && meet(one.box, other.box)))).map(one => one.text).join(", ");
+      document.body.dataset.named = getComputedStyle([...inner.querySelectorAll("table")].pop().querySelector("tbody td"), "::before").content.includes("r [mm]");
       document.body.dataset.below = [...inner.querySelectorAll("table")].every(t => [...t.querySelectorAll(".n")].pop().getBoundingClientRect().top >= t.querySelector("td").getBoundingClientRect().bottom - 4);
   document.body.dataset.beside = Math.abs(cell.getBoundingClientRect().top - first.getBoundingClientRect().top) < 8;
 };
@@ -127,6 +131,7 @@ TEST_F(Page, OnASmallScreenNothingIsOutOfSight) {
                                              << after.substr(std::min(after.find("data-cut"), after.size()), 100);
   EXPECT_TRUE(holds(after, "data-hidden=\"0\"")) << "no part scrolls sideways by itself";
   EXPECT_TRUE(holds(after, "data-beside=\"true\"")) << "the verdict stands beside the row's name";
+  EXPECT_TRUE(holds(after, "data-named=\"true\"")) << "a number at a row's beginning says what it is";
   EXPECT_TRUE(holds(after, "data-below=\"true\"")) << "and nothing else does";
 }
 
