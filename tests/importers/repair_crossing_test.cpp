@@ -26,7 +26,7 @@ TEST(Crossing, AnyNumberOfThreadsFindsTheSame) {
   for (const std::size_t n : {0u, 1'000u, 3'000u}) raw.vertex[n] = -1.0 * raw.vertex[n] + Vec3{0.001, 0.002, 0.001};
   const importers::Soup soup{raw.vertex, raw.triangle};
   const std::vector<std::int32_t> crossing = importers::find_crossing(soup);
-  EXPECT_GT(crossing.size(), 100u);
+  EXPECT_GT(crossing.size(), 18u) << "the triangles of the spikes, and those that they go through";
   for (const int threads : {2, 5}) EXPECT_EQ(importers::find_crossing(soup, threads), crossing);
 }
 
