@@ -455,9 +455,8 @@ class Import {
     if (const Result<Done> is_new = output::check_new(outcome.script_file, request_.overwrite); !is_new)
       return is_new.errors();
     outcome.tick_time = time_of_tick(true).value_or(0), outcome.dearest_time = dearest_work();
-    for (std::size_t i = 0; i < drafts_.size(); ++i) {
-      Draft& draft = drafts_[i];
-      const importers::CheckedMesh& mesh = file_->mesh[i];
+    for (Draft& draft : drafts_) {
+      const importers::CheckedMesh& mesh = file_->mesh[std::size_t(&draft - drafts_.data())];
       if (const Result<Done> written = importers::write_obj(draft.part.mesh_file, mesh.vertex, mesh.triangle); !written)
         return written.errors();
       outcome.organs.push_back(std::move(draft.part));
