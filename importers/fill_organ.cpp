@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <exception>
-#include <future>
 #include <limits>
 #include <numeric>
 
@@ -10,6 +8,7 @@
 #include "importers/coarsen.h"
 #include "importers/cover_lattice.h"
 #include "importers/fill.h"
+#include "importers/in_pieces.h"
 #include "importers/lattice.h"
 #include "importers/refine.h"
 #include "importers/scan_rows.h"
@@ -26,22 +25,6 @@ constexpr double kThinInSpacings = 2, kFullShare = 0.6;
 constexpr double kLongestEdge = 1.0 / 3;  // of the drawn surface, in spacings
 
 constexpr std::int64_t kFewestTriangles = 100;  // a coarser surface no longer resembles its organ
-
-/// Calls `work(begin, end)` for ranges of 0 .. count on several threads. The ranges do not depend on the number of
-/// threads.
-template <class Work>
-void in_pieces(std::size_t count, int threads, const Work& work) {
-  constexpr std::size_t kPiece = 2048;
-  std::atomic<std::size_t> next{0};
-  const auto run = [&] {
-    for (std::size_t begin; (begin = next.fetch_add(kPiece)) < count;) work(begin, std::min(begin + kPiece, count));
-  };
-  std::vector<std::future<void>> others;
-  for (int t = 1; t < threads && std::size_t(t) * kPiece < count; ++t)
-    others.push_back(std::async(std::launch::async, run));
-  run();
-  for (auto& other : others) other.get();
-}
 
 Errors check(const CheckedMesh& mesh, const FillOptions& options) {
   Errors errors;

@@ -150,6 +150,7 @@ Result<RepairedFile> repair_file(const std::string& path, const ImportOptions& o
   RepairOptions repair;
   repair.all_parts = options.all_parts;
   repair.largest_hole = options.largest_hole;
+  repair.threads = options.threads;
   repair.progress = share_of(tell, kReadShare, kRepairShare);
   if (most > 1) {
     Result<std::vector<CheckedMesh>> meshes = repair_parts(*raw, report.unit.in_metres, repair, most);

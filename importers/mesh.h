@@ -111,6 +111,7 @@ struct RepairOptions {
   double weld_distance = 1e-6;  ///< closer vertices are merged, in bounding-box diagonals, >= 0
   std::optional<double>
       largest_hole;  ///< holes up to this diameter are filled [m], >= 0; unset: a tenth of the diagonal
+  int threads = 1;   ///< >= 1; the result does not depend on it
   Progress progress;
 };
 

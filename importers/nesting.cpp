@@ -46,7 +46,9 @@ bool is_inside(const Soup& inner, const Soup& outer) {
   return true;
 }
 
-PartVote::PartVote(const RawMesh& mesh, double unit_in_metres) : part_count_(mesh.parts.size()) {
+PartVote::PartVote(const RawMesh& mesh, double unit_in_metres)
+    : part_count_(mesh.parts.size()), is_only_part_(part_count_ == 1 && !mesh.part_of_triangle.empty()) {
+  if (is_only_part_) return;
   std::vector<char> has_voted(mesh.vertex.size(), 0);
   for (std::size_t t = 0; t < mesh.part_of_triangle.size(); ++t)
     for (const std::int32_t v : mesh.triangle[t])
@@ -55,6 +57,7 @@ PartVote::PartVote(const RawMesh& mesh, double unit_in_metres) : part_count_(mes
 }
 
 std::int32_t PartVote::part_of(const std::vector<Vec3>& vertex) const {
+  if (is_only_part_) return 0;
   std::vector<std::int64_t> votes(part_count_, 0);
   for (const Vec3& p : vertex)
     if (const auto found = part_at_.find(hash_of(p)); found != part_at_.end()) ++votes[std::size_t(found->second)];

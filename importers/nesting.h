@@ -22,6 +22,7 @@ class PartVote {
 
  private:
   std::size_t part_count_;
+  bool is_only_part_;
   std::unordered_map<std::uint64_t, std::int32_t> part_at_;  ///< by the hash of a position
 };
 

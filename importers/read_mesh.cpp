@@ -132,7 +132,7 @@ Errors check_vertices(const RawMesh& mesh) {
            "export the mesh again; NaN or infinite coordinates cannot be repaired"}};
 }
 
-/// Merges repeated vertices: assimp repeats a vertex for every face that uses it.
+/// Merges repeated vertices.
 void join_repeats(RawMesh& mesh) {
   Soup soup{std::move(mesh.vertex), std::move(mesh.triangle)};
   weld(soup, 0);
@@ -197,7 +197,9 @@ Result<RawMesh> read_mesh(const std::string& path, const ReadOptions& options) {
   if (mesh.triangle.empty())
     return Error{path, "holds no triangles", "points and lines alone cannot be filled; export the surface"};
   if (Errors errors = check_vertices(mesh); !errors.empty()) return errors;
-  join_repeats(mesh);
+  // assimp's reader has merged them, unless some were not finite.
+  if (reader_of_file != send_mesh_file || !std::all_of(mesh.vertex.begin(), mesh.vertex.end(), is_finite))
+    join_repeats(mesh);
   return mesh;
 }
 

@@ -106,6 +106,7 @@ class Repair {
     std::vector<CheckedMesh> meshes;
     for (Organ& organ : organs_) {
       soup_ = std::move(organ.soup), shells_ = organ.shells;
+      organ = {};
       tell("looking for crossings", 0.7);
       treat_crossings();
       tell("turning outwards", 0.9);
@@ -278,7 +279,7 @@ class Repair {
 
   /// Removes small self-intersections and reports the rest.
   void treat_crossings() {
-    const std::vector<std::int32_t> crossing = find_crossing(soup_);
+    const std::vector<std::int32_t> crossing = find_crossing(soup_, options_.threads);
     if (crossing.empty()) return;
     const Triangle& first = soup_.triangle[std::size_t(crossing[0])];
     Vec3 place;

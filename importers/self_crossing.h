@@ -8,8 +8,8 @@
 namespace ctpm::importers {
 
 /// Finds triangles of a manifold mesh that intersect or overlap others, by ascending index. Sharing an edge or a corner
-/// does not count.
-std::vector<std::int32_t> find_crossing(const Soup& soup);
+/// does not count. The result does not depend on `threads` >= 1.
+std::vector<std::int32_t> find_crossing(const Soup& soup, int threads = 1);
 
 /// Removes the crossing triangles and up to four rings around them from a closed mesh of one part, and fills the holes.
 /// Succeeds only if no hole is wider than `largest_hole` [m], the mesh stays closed, in one part and of the same genus,

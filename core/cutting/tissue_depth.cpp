@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "core/cutting/blade_geometry.h"
 #include "core/cutting/extent.h"
@@ -17,6 +16,9 @@ constexpr double kBucket = kSurfaceCell;  ///< half its diagonal is within the b
 constexpr double kRounding = 1 + 1e-6;
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
+
+/// Of the buckets near a triangle, so many are remembered as bits.
+constexpr std::size_t kBits = 64;
 
 Vec3 least_of(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 Vec3 most_of(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
@@ -51,10 +53,100 @@ TissueDepth::Ball TissueDepth::ball_around(const Bound* begin, const Bound* end)
   return ball;
 }
 
+Vec3 TissueDepth::middle_of(const Grid& grid, std::size_t i, std::size_t j, std::size_t k) {
+  return grid.low + kBucket * Vec3{double(i) + 0.5, double(j) + 0.5, double(k) + 0.5};
+}
+
 Vec3 TissueDepth::middle_of(const Grid& grid, std::size_t bucket) {
   const auto x = std::size_t(grid.extent[0]), y = std::size_t(grid.extent[1]);
-  return grid.low +
-         kBucket * Vec3{double(bucket % x) + 0.5, double(bucket / x % y) + 0.5, double(bucket / x / y) + 0.5};
+  return middle_of(grid, bucket % x, bucket / x % y, bucket / x / y);
+}
+
+/// Buckets from `from` to `to` that a triangle may come near to, numbered by their places, along x first.
+struct TissueDepth::Window {
+  std::array<std::int32_t, 3> from, to;
+
+  bool fits_bits() const {
+    std::size_t places = 1;
+    for (std::size_t a = 0; a < 3; ++a) places *= std::size_t(to[a] - from[a] + 1);
+    return places <= kBits;
+  }
+  /// Calls `visit(place, bucket, i, j, k)`.
+  template <class Visit>
+  void for_each(const std::array<std::int32_t, 3>& extent, const Visit& visit) const {
+    std::size_t place = 0;
+    for (std::int32_t k = from[2]; k <= to[2]; ++k)
+      for (std::int32_t j = from[1]; j <= to[1]; ++j)
+        for (std::int32_t i = from[0]; i <= to[0]; ++i, ++place)
+          visit(place,
+                std::size_t(i) + std::size_t(extent[0]) * (std::size_t(j) + std::size_t(extent[1]) * std::size_t(k)), i,
+                j, k);
+  }
+};
+
+TissueDepth::Window TissueDepth::window_of(const Grid& grid, std::size_t triangle) {
+  const auto& t = grid.surface->triangle[triangle];
+  const Vec3 a = grid.surface->vertex[std::size_t(t[0])], b = grid.surface->vertex[std::size_t(t[1])],
+             c = grid.surface->vertex[std::size_t(t[2])], band{kBand, kBand, kBand};
+  const Vec3 from = (least_of(least_of(a, b), c) - band - grid.low) / kBucket,
+             to = (most_of(most_of(a, b), c) + band - grid.low) / kBucket;
+  const auto& e = grid.extent;
+  return {{std::int32_t(from.x), std::int32_t(from.y), std::int32_t(from.z)},
+          {std::min(std::int32_t(to.x), e[0] - 1), std::min(std::int32_t(to.y), e[1] - 1),
+           std::min(std::int32_t(to.z), e[2] - 1)}};
+}
+
+/// Calls `visit(place, bucket)` for the buckets of a window that a triangle comes within kBand of, at any place in
+/// them.
+template <class Visit>
+void TissueDepth::for_each_near(const Grid& grid, std::size_t triangle, const Window& window, const Visit& visit) {
+  constexpr double kReach = kBand + 0.8661 * kBucket, kSurely = kReach / kRounding;
+  const Bound& bound = grid.bound[triangle];
+  const auto& t = grid.surface->triangle[triangle];
+  window.for_each(grid.extent, [&](std::size_t place, std::size_t bucket, std::int32_t i, std::int32_t j,
+                                   std::int32_t k) {
+    const Vec3 middle = middle_of(grid, std::size_t(i), std::size_t(j), std::size_t(k)), apart = middle - bound.middle;
+    // Mostly the triangle's own middle shows that it is near.
+    if (dot(apart, apart) > kSurely * kSurely) {
+      if (bound.is_beyond(middle, kRounding * kReach)) return;
+      const auto corner = [&](std::size_t c) { return grid.surface->vertex[std::size_t(t[c])]; };
+      if (norm(nearest_in_triangle(middle, corner(0), corner(1), corner(2)) - middle) > kReach) return;
+    }
+    visit(place, bucket);
+  });
+}
+
+/// Lists the triangles near each bucket, ascending.
+void TissueDepth::find_near(Grid& grid) {
+  const std::size_t count = grid.bound.size();
+  const auto& e = grid.extent;
+  // At first the number of triangles near each bucket.
+  grid.row.assign(std::size_t(e[0]) * std::size_t(e[1]) * std::size_t(e[2]), 0);
+  std::vector<std::uint64_t> is_near(count);  // a bit for each place of a triangle's window
+  for (std::size_t n = 0; n < count; ++n)
+    for_each_near(grid, n, window_of(grid, n), [&](std::size_t place, std::size_t bucket) {
+      ++grid.row[bucket];
+      is_near[n] |= std::uint64_t(1) << place % kBits;
+    });
+  grid.first.assign(1, 0);
+  for (std::int32_t& row : grid.row) {
+    if (row > 0) grid.first.push_back(grid.first.back() + row);
+    row = row > 0 ? std::int32_t(grid.first.size()) - 2 : -1;
+  }
+  grid.triangle.resize(std::size_t(grid.first.back()));
+  std::vector<std::int32_t> next(grid.first.begin(), grid.first.end() - 1);
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto add = [&](std::size_t bucket) {
+      grid.triangle[std::size_t(next[std::size_t(grid.row[bucket])]++)] = std::int32_t(n);
+    };
+    const Window window = window_of(grid, n);
+    if (!window.fits_bits())
+      for_each_near(grid, n, window, [&](std::size_t, std::size_t bucket) { add(bucket); });
+    else
+      window.for_each(e, [&](std::size_t place, std::size_t bucket, std::int32_t, std::int32_t, std::int32_t) {
+        if (is_near[n] >> place & 1) add(bucket);
+      });
+  }
 }
 
 TissueDepth::Grid TissueDepth::make_grid(const Surface& surface) {
@@ -67,41 +159,11 @@ TissueDepth::Grid TissueDepth::make_grid(const Surface& surface) {
   const Vec3 size = high - low + Vec3{2 * margin, 2 * margin, 2 * margin};
   grid.extent = {1 + std::int32_t(size.x / kBucket), 1 + std::int32_t(size.y / kBucket),
                  1 + std::int32_t(size.z / kBucket)};
-  const auto& e = grid.extent;
+  grid.bound.reserve(surface.triangle.size());
   for (const auto& t : surface.triangle) grid.bound.push_back(bound_of(surface, t));
   for (std::size_t n = 0; n < grid.bound.size(); n += kBlock)
     grid.block.push_back(ball_around(&grid.bound[n], grid.bound.data() + std::min(n + kBlock, grid.bound.size())));
-  const std::size_t count = std::size_t(e[0]) * std::size_t(e[1]) * std::size_t(e[2]);
-  std::vector<std::pair<std::size_t, std::int32_t>> found;  // a bucket, and a triangle near it
-  // At first the number of triangles near each bucket.
-  grid.row.assign(count, 0);
-  for (std::size_t n = 0; n < surface.triangle.size(); ++n) {
-    const auto& t = surface.triangle[n];
-    const Vec3 a = surface.vertex[std::size_t(t[0])], b = surface.vertex[std::size_t(t[1])],
-               c = surface.vertex[std::size_t(t[2])], band{kBand, kBand, kBand};
-    const Vec3 from = (least_of(least_of(a, b), c) - band - grid.low) / kBucket,
-               to = (most_of(most_of(a, b), c) + band - grid.low) / kBucket;
-    const double reach = kBand + 0.8661 * kBucket;
-    for (auto k = std::int32_t(from.z); k <= std::min(std::int32_t(to.z), e[2] - 1); ++k)
-      for (auto j = std::int32_t(from.y); j <= std::min(std::int32_t(to.y), e[1] - 1); ++j)
-        for (auto i = std::int32_t(from.x); i <= std::min(std::int32_t(to.x), e[0] - 1); ++i) {
-          const std::size_t bucket =
-              std::size_t(i) + std::size_t(e[0]) * (std::size_t(j) + std::size_t(e[1]) * std::size_t(k));
-          const Vec3 middle = middle_of(grid, bucket);
-          if (grid.bound[n].is_beyond(middle, kRounding * reach)) continue;
-          if (norm(nearest_in_triangle(middle, a, b, c) - middle) > reach) continue;
-          found.emplace_back(bucket, std::int32_t(n)), ++grid.row[bucket];
-        }
-  }
-  grid.first.assign(1, 0);
-  for (std::int32_t& row : grid.row) {
-    if (row > 0) grid.first.push_back(grid.first.back() + row);
-    row = row > 0 ? std::int32_t(grid.first.size()) - 2 : -1;
-  }
-  grid.triangle.resize(found.size());
-  std::vector<std::int32_t> next(grid.first.begin(), grid.first.end() - 1);
-  for (const auto& [bucket, triangle] : found)
-    grid.triangle[std::size_t(next[std::size_t(grid.row[bucket])]++)] = triangle;
+  find_near(grid);
   find_sides(grid);
   return grid;
 }

@@ -61,11 +61,17 @@ class TissueDepth {
     std::vector<Ball> block;                    ///< around each kBlock triangles that follow each other, ascending
     std::vector<std::int8_t> side;              ///< of each bucket's middle: 1 inside, -1 outside
   };
+  struct Window;
   static Grid make_grid(const Surface& surface);
+  static Window window_of(const Grid& grid, std::size_t triangle);
+  template <class Visit>
+  static void for_each_near(const Grid& grid, std::size_t triangle, const Window& window, const Visit& visit);
+  static void find_near(Grid& grid);
   static void find_sides(Grid& grid);
   static constexpr std::size_t kBlock = 64;
   static Ball ball_around(const Bound* begin, const Bound* end);
   static Bound bound_of(const Surface& surface, const std::array<std::int32_t, 3>& triangle);
+  static Vec3 middle_of(const Grid& grid, std::size_t i, std::size_t j, std::size_t k);
   static Vec3 middle_of(const Grid& grid, std::size_t bucket);
   static std::int64_t bucket_of(const Grid& grid, Vec3 rest);
   struct Near {

@@ -33,9 +33,17 @@ std::uint32_t spread_bits(std::uint32_t n) {
 NearSurface::NearSurface(const Model& model, std::size_t first_organ, std::size_t last_organ)
     : sphere_rest_(model.rest_position) {
   first_.push_back(0);
+  const bool is_lent = last_organ == first_organ + 1 && model.organs[first_organ].first == 0;
   for (std::size_t i = first_organ; i < last_organ; ++i) {
+    if (!is_lent) copy_followers(model.surfaces[i], model.organs[i]);
     add_organ(model.surfaces[i], model.organs[i]);
     for (Index s = 0; s < model.organs[i].count; ++s) spheres_.push_back(model.organs[i].first + s);
+  }
+  if (is_lent) {
+    const Surface& surface = model.surfaces[first_organ];
+    rest_ = surface.vertex, sphere_ = surface.binding.sphere, weight_ = surface.binding.weight;
+  } else {
+    rest_ = own_rest_, sphere_ = own_sphere_, weight_ = own_weight_;
   }
   find_bounds(kTrianglesPerPatch);
 }
@@ -43,8 +51,10 @@ NearSurface::NearSurface(const Model& model, std::size_t first_organ, std::size_
 NearSurface::NearSurface(const Model& model, std::size_t organ, const Surface& part)
     : sphere_rest_(model.rest_position) {
   first_.push_back(0);
+  copy_followers(part, model.organs[organ]);
   add_organ(part, model.organs[organ]);
-  spheres_ = sphere_;
+  rest_ = own_rest_, sphere_ = own_sphere_, weight_ = own_weight_;
+  spheres_ = own_sphere_;
   for (const TurnedOffset& offset : turned_)
     spheres_.insert(spheres_.end(), offset.sphere.begin(), offset.sphere.end());
   std::sort(spheres_.begin(), spheres_.end());
@@ -55,36 +65,41 @@ NearSurface::NearSurface(const Model& model, std::size_t organ, const Surface& p
 void NearSurface::find_bounds(Index triangles_per_patch) {
   if (triangles_.empty()) return;
   sort_triangles();
+  find_places_in_spheres();
   const auto count = Index(triangles_.size());
+  std::vector<Index> seen(spheres_.size(), -1);
   for (Index t = 0; t < count; t += triangles_per_patch) {
     const Index last = std::min(t + triangles_per_patch, count);
-    patches_.push_back(bound_of(t, last, t, last));
+    patches_.push_back(bound_of(t, last, t, last, seen));
   }
   const auto patches = Index(patches_.size());
   for (Index p = 0; p < patches; p += kPatchesPerGroup) {
     const Index last = std::min(p + kPatchesPerGroup, patches);
-    groups_.push_back(bound_of(p, last, patches_[std::size_t(p)].first, patches_[std::size_t(last) - 1].last));
+    groups_.push_back(bound_of(p, last, patches_[std::size_t(p)].first, patches_[std::size_t(last) - 1].last, seen));
   }
   patch_places_.resize(patches_.size()), group_places_.resize(groups_.size());
   rest_box_ = Box(rest_.front());
   for (const Vec3& p : rest_) rest_box_.add(p);
   for (const Bound& group : groups_)
     widen_ = std::max(widen_, group.widen), most_turned_ = std::max(most_turned_, group.turned);
-  for (const Index sphere : sphere_) in_spheres_.push_back(place_in_spheres(sphere));
-  for (TurnedOffset& offset : turned_)
-    for (Index& sphere : offset.sphere) sphere = place_in_spheres(sphere);
   position_.resize(spheres_.size()), moved_.resize(spheres_.size());
   placed_.resize(vertex_count()), placed_in_.assign(vertex_count(), 0);
 }
 
+void NearSurface::copy_followers(const Surface& surface, const OrganRange& organ) {
+  own_rest_.insert(own_rest_.end(), surface.vertex.begin(), surface.vertex.end());
+  own_sphere_.reserve(own_sphere_.size() + surface.binding.sphere.size());
+  for (const Index sphere : surface.binding.sphere) own_sphere_.push_back(organ.first + sphere);
+  own_weight_.insert(own_weight_.end(), surface.binding.weight.begin(), surface.binding.weight.end());
+}
+
 void NearSurface::add_organ(const Surface& surface, const OrganRange& organ) {
-  const auto first_vertex = Index(vertex_count()), first_entry = Index(sphere_.size());
+  const Index first_vertex = Index(vertex_count()), first_entry = first_.back();
   if (surface.vertex.empty()) return;
-  rest_.insert(rest_.end(), surface.vertex.begin(), surface.vertex.end());
+  first_.reserve(first_.size() + surface.vertex.size());
+  triangles_.reserve(triangles_.size() + surface.triangle.size());
   for (std::size_t v = 1; v < surface.binding.first.size(); ++v)
     first_.push_back(first_entry + surface.binding.first[v]);
-  for (const Index sphere : surface.binding.sphere) sphere_.push_back(organ.first + sphere);
-  weight_.insert(weight_.end(), surface.binding.weight.begin(), surface.binding.weight.end());
   if (!surface.binding.turned.empty()) turned_of_.resize(vertex_count(), -1);
   for (const TurnedOffset& offset : surface.binding.turned) {
     turned_of_[std::size_t(first_vertex + offset.vertex)] = Index(turned_.size());
@@ -113,6 +128,7 @@ void NearSurface::sort_triangles() {
     Index triangle;
   };
   std::vector<Key> keys;
+  keys.reserve(triangles_.size());
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const Vec3 p = rest(triangles_[t].corner[0]) - box.low;
     const auto part = [&](double x) { return spread_bits(std::uint32_t(x * scale)); };
@@ -121,36 +137,46 @@ void NearSurface::sort_triangles() {
   std::sort(keys.begin(), keys.end(),
             [](const Key& p, const Key& q) { return p.code != q.code ? p.code < q.code : p.triangle < q.triangle; });
   std::vector<Triangle> sorted;
+  sorted.reserve(triangles_.size());
   for (const Key& key : keys) sorted.push_back(triangles_[std::size_t(key.triangle)]);
   triangles_ = std::move(sorted);
 }
 
-NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_triangle, Index last_triangle) {
-  std::vector<Index> spheres;
-  std::vector<std::uint8_t> is_known(std::size_t(spheres_.back() - spheres_.front()) + 1, 0);
+/// `seen`: of each of spheres_, the bound that listed it last.
+NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_triangle, Index last_triangle,
+                                         std::vector<Index>& seen) {
+  const auto begin = Index(bound_spheres_.size());
   double widen = 0, turned = 0;
   Box box(rest(triangles_[std::size_t(first_triangle)].corner[0]));
   for (Index t = first_triangle; t < last_triangle; ++t)
     for (const Index corner : triangles_[std::size_t(t)].corner) {
-      const Follower follows = follower(corner);
       box.add(rest(corner));
-      for (const Index sphere : follows.sphere)
-        if (!std::exchange(is_known[std::size_t(sphere - spheres_.front())], std::uint8_t(1)))
-          spheres.push_back(sphere);
       double negative = 0;
-      for (const double w : follows.weight) negative -= std::min(w, 0.0);
+      for (auto e = std::size_t(first_[std::size_t(corner)]); e < std::size_t(first_[std::size_t(corner) + 1]); ++e) {
+        const Index sphere = in_spheres_[e];
+        if (std::exchange(seen[std::size_t(sphere)], begin) != begin) bound_spheres_.push_back(sphere);
+        negative -= std::min(weight_[e], 0.0);
+      }
       widen = std::max(widen, negative);
       if (const Index t = turned_of(corner); t >= 0)
         turned = std::max(turned, 2 * norm(turned_[std::size_t(t)].offset));
     }
-  std::sort(spheres.begin(), spheres.end());
-  const auto begin = Index(bound_spheres_.size());
-  for (const Index sphere : spheres) bound_spheres_.push_back(place_in_spheres(sphere));
+  std::sort(bound_spheres_.begin() + begin, bound_spheres_.end());
   return {first, last, begin, Index(bound_spheres_.size()), box, widen, turned};
 }
 
-NearSurface::Index NearSurface::place_in_spheres(Index sphere) const {
-  return Index(std::lower_bound(spheres_.begin(), spheres_.end(), sphere) - spheres_.begin());
+/// Finds the places in spheres_ of what vertices follow.
+void NearSurface::find_places_in_spheres() {
+  in_spheres_ = sphere_;
+  if (std::size_t(spheres_.back()) + 1 == spheres_.size()) return;  // their numbers
+  std::vector<Index> place(std::size_t(spheres_.back() - spheres_.front()) + 1);
+  for (std::size_t i = 0; i < spheres_.size(); ++i) place[std::size_t(spheres_[i] - spheres_.front())] = Index(i);
+  const auto place_of = [&](Index sphere) { return place[std::size_t(sphere - spheres_.front())]; };
+  own_in_spheres_.reserve(sphere_.size());
+  for (const Index sphere : sphere_) own_in_spheres_.push_back(place_of(sphere));
+  in_spheres_ = own_in_spheres_;
+  for (TurnedOffset& offset : turned_)
+    for (Index& sphere : offset.sphere) sphere = place_of(sphere);
 }
 
 void NearSurface::begin(const Vec3Array& position) {

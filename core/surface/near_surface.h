@@ -65,13 +65,14 @@ class NearSurface {
   NearSurface(const Model& model, std::size_t first_organ, std::size_t last_organ);
   /// Part of the surface of an organ; its cost is that of the spheres that it follows.
   NearSurface(const Model& model, std::size_t organ, const Surface& part);
+  NearSurface(NearSurface&&) = default;
 
   bool empty() const { return triangles_.empty(); }
   std::size_t vertex_count() const { return first_.empty() ? 0 : first_.size() - 1; }
   Follower follower(Index vertex) const {
     const auto begin = std::size_t(first_[std::size_t(vertex)]),
                count = std::size_t(first_[std::size_t(vertex) + 1]) - begin;
-    return {std::span(sphere_).subspan(begin, count), std::span(weight_).subspan(begin, count)};
+    return {sphere_.subspan(begin, count), weight_.subspan(begin, count)};
   }
   Vec3 rest(Index vertex) const { return rest_[std::size_t(vertex)]; }
 
@@ -112,20 +113,25 @@ class NearSurface {
   Index turned_of(Index vertex) const { return turned_of_.empty() ? -1 : turned_of_[std::size_t(vertex)]; }
   void find_moved() const;
   void add_organ(const Surface& surface, const OrganRange& organ);
-  Index place_in_spheres(Index sphere) const;
+  void copy_followers(const Surface& surface, const OrganRange& organ);
+  void find_places_in_spheres();
   void find_bounds(Index triangles_per_patch);
   void sort_triangles();
-  Bound bound_of(Index first, Index last, Index first_triangle, Index last_triangle);
+  Bound bound_of(Index first, Index last, Index first_triangle, Index last_triangle, std::vector<Index>& seen);
 
   const Vec3Array& sphere_rest_;
   std::vector<Index> spheres_;         ///< that bounds are about, ascending: all of the organs, or those followed
-  std::vector<Index> first_, sphere_;  ///< binding of all vertices, as in SurfaceBinding
-  std::vector<Index> in_spheres_;      ///< place of each of sphere_ in spheres_
-  std::vector<double> weight_;
-  std::vector<TurnedOffset> turned_;  ///< their spheres are places in spheres_
-  std::vector<Index> turned_of_;      ///< of each vertex, -1: none; empty if no vertex has any
-  std::vector<Vec3> rest_;            ///< [m]
-  std::vector<Triangle> triangles_;   ///< by patch
+  std::vector<Index> first_;           ///< binding of all vertices, as in SurfaceBinding
+  std::span<const Index> sphere_;      ///< as there; the Model's own where one organ is all that there is
+  std::span<const double> weight_;     ///< as there
+  std::span<const Index> in_spheres_;  ///< place of each of sphere_ in spheres_
+  std::span<const Vec3> rest_;         ///< of all vertices [m]
+  std::vector<TurnedOffset> turned_;   ///< their spheres are places in spheres_
+  std::vector<Index> turned_of_;       ///< of each vertex, -1: none; empty if no vertex has any
+  std::vector<Index> own_sphere_, own_in_spheres_;  ///< what the spans show where it is not the Model's
+  std::vector<double> own_weight_;
+  std::vector<Vec3> own_rest_;
+  std::vector<Triangle> triangles_;  ///< by patch
   std::vector<Bound> patches_, groups_;
   std::vector<Place> patch_places_, group_places_;
   std::vector<Index> bound_spheres_;  ///< in spheres_

@@ -201,6 +201,9 @@ void bind_surface(FilledOrgan& organ, int threads) {
 
   SurfaceBinding& binding = organ.surface.binding;
   binding = {};
+  std::size_t entries = 0;
+  for (const SurfaceBinding& run : runs) entries += run.sphere.size();
+  binding.first.reserve(vertex_count + 1), binding.sphere.reserve(entries), binding.weight.reserve(entries);
   binding.first.push_back(0);
   for (SurfaceBinding& run : runs) {
     const std::int32_t start = std::int32_t(binding.sphere.size());

@@ -43,7 +43,6 @@ constexpr double kMostOverlap = 0.02;
 struct Draft {
   Tissue tissue;
   FilledOrgan filled;
-  importers::CheckedMesh mesh;
   scenes::OrganSpec spec;
   scenes::Script script;
   ImportedPart part;
@@ -258,7 +257,7 @@ class Import {
       const std::string mesh = (is_alone ? stem_ : stem_ + "-" + file_name_of(draft.part.name)) + ".obj";
       draft.part.mesh_file = beside(mesh);
       std::optional<Vec3> colour = part >= 0 ? file.part_colour[std::size_t(part)] : std::nullopt;
-      draft.filled = std::move(one.organ), draft.mesh = file.mesh[i], draft.part.report = std::move(one.report);
+      draft.filled = std::move(one.organ), draft.part.report = std::move(one.report);
       draft.spec = organ_spec(draft.part.name, mesh, draft.tissue, draft.filled, colour);
       draft.spec.all_parts = request_.parts == Parts::all_in_one, draft.spec.most_triangles = request_.most_triangles;
       draft.spec.anchors = request_.anchors;
@@ -450,13 +449,14 @@ class Import {
       organs.insert(organs.end(), present_.organs.begin(), present_.organs.end());
       scene_.cameras = {front_camera(organs)};
     }
+    organs.clear();  // copies of large meshes
     const std::string script_name = request_.into ? stem_ + "-" + file_name_of(drafts_.front().part.name) : stem_;
     outcome.script_file = beside(script_name + ".script.json");
     if (const Result<Done> is_new = output::check_new(outcome.script_file, request_.overwrite); !is_new)
       return is_new.errors();
     outcome.tick_time = time_of_tick(true).value_or(0), outcome.dearest_time = dearest_work();
     for (Draft& draft : drafts_) {
-      const importers::CheckedMesh& mesh = draft.mesh;
+      const importers::CheckedMesh& mesh = file_->mesh[std::size_t(&draft - drafts_.data())];
       if (const Result<Done> written = importers::write_obj(draft.part.mesh_file, mesh.vertex, mesh.triangle); !written)
         return written.errors();
       outcome.organs.push_back(std::move(draft.part));

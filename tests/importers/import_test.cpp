@@ -173,5 +173,22 @@ TEST(Import, ProgressNeverFallsAndEndsWhole) {
   EXPECT_EQ(stages, (std::set<std::string>{"read", "repair", "fill"}));
 }
 
+TEST(Import, ProgressIsToldBeforeTheMeshIsRead) {
+  const zoo::Folder folder;
+  const std::string path = folder.write("ball.stl", zoo::to_binary_stl(zoo::sphere(60, 3)));
+  importers::ImportOptions options;
+  int told = 0;
+  // What is written when progress is told first is what is read.
+  options.progress = [&](const std::string& stage, double) {
+    if (++told > 1) return;
+    EXPECT_EQ(stage, "read");
+    folder.write("ball.stl", zoo::to_binary_stl(zoo::sphere(60, 4)));
+  };
+  const Result<importers::ImportedOrgan> imported = importers::import_organ(path, options);
+  ASSERT_TRUE(imported) << text_of(imported.errors());
+  EXPECT_EQ(imported->report.before.triangles, 20 * 256);
+  EXPECT_GT(told, 1);
+}
+
 }  // namespace
 }  // namespace ctpm

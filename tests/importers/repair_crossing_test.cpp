@@ -21,6 +21,15 @@ TEST(Crossing, SoundMeshesHaveNone) {
     EXPECT_TRUE(importers::find_crossing({raw.vertex, raw.triangle}).empty());
 }
 
+TEST(Crossing, AnyNumberOfThreadsFindsTheSame) {
+  importers::RawMesh raw = zoo::torus(0.05, 0.02, 96, 64);
+  for (const std::size_t n : {0u, 1'000u, 3'000u}) raw.vertex[n] = -1.0 * raw.vertex[n] + Vec3{0.001, 0.002, 0.001};
+  const importers::Soup soup{raw.vertex, raw.triangle};
+  const std::vector<std::int32_t> crossing = importers::find_crossing(soup);
+  EXPECT_GT(crossing.size(), 18u) << "the triangles of the spikes, and those that they go through";
+  for (const int threads : {2, 5}) EXPECT_EQ(importers::find_crossing(soup, threads), crossing);
+}
+
 TEST(Crossing, SpikeThroughTheOppositeSideIsCutOutAndFilledAgain) {
   // One vertex pulled through the ball and out at the other side, as a slip in a mesh editor does.
   importers::RawMesh raw = zoo::sphere(0.05, 4);
