@@ -22,9 +22,10 @@ bool is_swept(const State& state, std::size_t organ) {
 }  // namespace
 
 struct CutBody::Parts {
-  Parts(const Model& model, std::size_t organ) : grid(model, organ), binding(model, grid) {}
+  Parts(const Model& model, std::size_t organ) : grid(model, organ), mesher(grid), binding(model, grid) {}
 
   CutGrid grid;
+  Mesher mesher;
   SideBinding binding;
   /// Triangles of the whole organ between vertices of its own surface, by the grid's blocks: what there is far from a
   /// cut.
@@ -77,7 +78,8 @@ bool CutBody::update(const State& state) {
   if (!parts_ && !is_swept(state, organ_)) return false;
   prepare();
   if (!parts_->grid.update(state)) return false;
-  parts_->binding.update(parts_->grid.take_changed());
+  const CutGrid::NodeBox changed = parts_->grid.take_changed();
+  parts_->mesher.update(changed), parts_->binding.update(changed);
   rebuild(state);
   return true;
 }
@@ -103,7 +105,7 @@ class CutBody::Rebuilding {
         state_(state),
         near_(grid_.widened(grid_.cut_blocks())),
         meshed_(grid_.widened(near_)),
-        mesh_(make_mesh(grid_, meshed_)),
+        mesh_(body.parts_->mesher.make(meshed_)),
         of_corner_(body.whole_.vertex.size(), -1),
         outer_(mesh_.vertex.size(), -1),
         wall_(mesh_.vertex.size(), -1),

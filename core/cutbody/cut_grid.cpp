@@ -361,7 +361,8 @@ void CutGrid::take_back_last_row() {
 }
 
 void CutGrid::reset() {
-  if (anything_cut_) changed_ = true, box_ = {{0, 0, 0}, extent_};
+  if (anything_cut_ || !cuts_.empty()) box_ = {{0, 0, 0}, extent_};
+  changed_ = changed_ || anything_cut_;
   for (const auto& [e, cut] : cuts_)
     if (!outer_.contains(e)) parted_[e / kDirections] &= std::uint8_t(~(1 << int(e % kDirections)));
   cuts_.clear(), by_last_.clear(), outside_.clear(), outside_by_last_.clear(), torn_.clear(), torn_tissue_.reset();
