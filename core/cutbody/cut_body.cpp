@@ -1,7 +1,10 @@
 #include "core/cutbody/cut_body.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
+#include <functional>
+#include <unordered_map>
 
 #include "core/cutbody/cut_grid.h"
 #include "core/cutbody/cut_mesh.h"
@@ -12,6 +15,15 @@ namespace ctpm::cutbody {
 using Triangle = std::array<CutGrid::Index, 3>;
 
 namespace {
+
+struct PlaceHash {
+  std::size_t operator()(const Vec3& place) const {
+    std::size_t hash = 0;
+    for (const double x : {place.x, place.y, place.z})
+      hash = std::rotl(hash, 23) * 0x9e3779b97f4a7c15u ^ std::hash<double>()(x);
+    return hash;
+  }
+};
 
 /// Whether a blade went through an organ. It is asked in each tick, over all rows that there are.
 bool is_swept(const State& state, std::size_t organ) {
@@ -31,6 +43,7 @@ struct CutBody::Parts {
   /// cut.
   std::vector<Index> first_far;
   std::vector<Triangle> far;
+  std::unordered_map<Vec3, Index, PlaceHash> nearest_corner;  ///< of places that were asked for
 };
 
 CutBody::CutBody(const Model& model, std::size_t organ) : model_(model), organ_(organ), whole_(model.surfaces[organ]) {
@@ -41,13 +54,15 @@ CutBody::CutBody(CutBody&&) noexcept = default;
 
 /// The vertex of the organ's own surface that stands for those of the grid around it.
 CutBody::Index CutBody::nearest_corner(Vec3 rest) const {
-  const Index triangle = parts_->grid.nearest_triangle(rest);
-  if (triangle < 0) return -1;
+  const auto [found, is_new] = parts_->nearest_corner.try_emplace(rest, -1);
+  const Index triangle = is_new ? parts_->grid.nearest_triangle(rest) : -1;
+  if (triangle < 0) return found->second;
   const Triangle& t = whole_.triangle[std::size_t(triangle)];
-  return *std::min_element(t.begin(), t.end(), [&](Index a, Index b) {
+  found->second = *std::min_element(t.begin(), t.end(), [&](Index a, Index b) {
     const double to_a = norm(whole_.vertex[std::size_t(a)] - rest), to_b = norm(whole_.vertex[std::size_t(b)] - rest);
     return to_a < to_b || (to_a == to_b && a < b);
   });
+  return found->second;
 }
 
 void CutBody::prepare() {

@@ -160,8 +160,10 @@ CutGrid::Index CutGrid::find_home(Index sphere) const {
     std::vector<Index> next;
     Index best = -1;
     const auto go = [&](Index to, std::size_t by) {
-      const bool is_cut = cuts_.contains(by) && !torn_.contains(by);
-      if (was_seen(to) != 0 || is_cut || outside_.contains(by)) return;
+      const auto is_cut = [&] {
+        return is_parted(Index(by / kDirections), int(by % kDirections)) && cuts_.contains(by) && !torn_.contains(by);
+      };
+      if (was_seen(to) != 0 || is_cut() || (!outside_.empty() && outside_.contains(by))) return;
       was_seen(to) = 1, next.push_back(to);
       if (!in_tissue(to)) return;
       if (best < 0 || std::pair(squared_distance(to), to) < std::pair(squared_distance(best), best)) best = to;
