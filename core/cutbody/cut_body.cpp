@@ -1,13 +1,12 @@
 #include "core/cutbody/cut_body.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
-#include <functional>
 #include <unordered_map>
 
 #include "core/cutbody/cut_grid.h"
 #include "core/cutbody/cut_mesh.h"
+#include "core/cutbody/place_hash.h"
 #include "core/cutting/swept_surface.h"
 
 namespace ctpm::cutbody {
@@ -15,15 +14,6 @@ namespace ctpm::cutbody {
 using Triangle = std::array<CutGrid::Index, 3>;
 
 namespace {
-
-struct PlaceHash {
-  std::size_t operator()(const Vec3& place) const {
-    std::size_t hash = 0;
-    for (const double x : {place.x, place.y, place.z})
-      hash = std::rotl(hash, 23) * 0x9e3779b97f4a7c15u ^ std::hash<double>()(x);
-    return hash;
-  }
-};
 
 /// Whether a blade went through an organ. It is asked in each tick, over all rows that there are.
 bool is_swept(const State& state, std::size_t organ) {
