@@ -114,6 +114,12 @@ std::unique_ptr<H264File> H264File::create(const std::string& path, int width, i
   return std::unique_ptr<H264File>(new H264File(std::move(parts)));
 }
 
+std::string H264File::library() {
+  const unsigned version = avcodec_version();
+  return "libavcodec " + std::to_string(AV_VERSION_MAJOR(version)) + "." + std::to_string(AV_VERSION_MINOR(version)) +
+         "." + std::to_string(AV_VERSION_MICRO(version));
+}
+
 Result<Done> H264File::add(const render::Frame& frame) {
   Parts& p = *parts_;
   // The encoder may still look at the last frame's buffer.

@@ -16,6 +16,9 @@ class H264File {
   static std::unique_ptr<H264File> create(const std::string& path, int width, int height, double fps);
   ~H264File();
 
+  /// Name and version of the library that encodes.
+  static std::string library();
+
   /// Appends a frame of the file's size. Errors: it cannot be encoded or written.
   Result<Done> add(const render::Frame& frame);
 

@@ -238,7 +238,7 @@ Errors VideoWriter::check(const std::string& path, int width, int height, double
   return errors;
 }
 
-std::string video_library() { return "OpenCV " CV_VERSION; }
+std::string video_library() { return H264File::library() + ", OpenCV " CV_VERSION; }
 
 VideoWriter::VideoWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
