@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
+#include <unordered_map>
 
 #include "core/cutbody/cut_grid.h"
 #include "core/cutbody/cut_mesh.h"
+#include "core/cutbody/place_hash.h"
 #include "core/cutting/swept_surface.h"
 
 namespace ctpm::cutbody {
@@ -22,14 +25,17 @@ bool is_swept(const State& state, std::size_t organ) {
 }  // namespace
 
 struct CutBody::Parts {
-  Parts(const Model& model, std::size_t organ) : grid(model, organ), binding(model, grid) {}
+  Parts(const Model& model, std::size_t organ) : grid(model, organ), mesher(grid), binding(model, grid) {}
 
   CutGrid grid;
+  Mesher mesher;
   SideBinding binding;
   /// Triangles of the whole organ between vertices of its own surface, by the grid's blocks: what there is far from a
   /// cut.
   std::vector<Index> first_far;
   std::vector<Triangle> far;
+  std::unordered_map<Vec3, Index, PlaceHash> nearest_corner;  ///< of places that were asked for
+  std::vector<std::optional<SideBinding::Bound>> far_bound;   ///< of the organ's own vertices, where no cut is near
 };
 
 CutBody::CutBody(const Model& model, std::size_t organ) : model_(model), organ_(organ), whole_(model.surfaces[organ]) {
@@ -40,18 +46,21 @@ CutBody::CutBody(CutBody&&) noexcept = default;
 
 /// The vertex of the organ's own surface that stands for those of the grid around it.
 CutBody::Index CutBody::nearest_corner(Vec3 rest) const {
-  const Index triangle = parts_->grid.nearest_triangle(rest);
-  if (triangle < 0) return -1;
+  const auto [found, is_new] = parts_->nearest_corner.try_emplace(rest, -1);
+  const Index triangle = is_new ? parts_->grid.nearest_triangle(rest) : -1;
+  if (triangle < 0) return found->second;
   const Triangle& t = whole_.triangle[std::size_t(triangle)];
-  return *std::min_element(t.begin(), t.end(), [&](Index a, Index b) {
+  found->second = *std::min_element(t.begin(), t.end(), [&](Index a, Index b) {
     const double to_a = norm(whole_.vertex[std::size_t(a)] - rest), to_b = norm(whole_.vertex[std::size_t(b)] - rest);
     return to_a < to_b || (to_a == to_b && a < b);
   });
+  return found->second;
 }
 
 void CutBody::prepare() {
   if (parts_) return;
   parts_ = std::make_unique<Parts>(model_, organ_);
+  parts_->far_bound.resize(whole_.vertex.size());
   const CutMesh mesh = make_mesh(parts_->grid);
   std::vector<Index> corner;
   for (const CutMesh::Vertex& vertex : mesh.vertex) corner.push_back(nearest_corner(vertex.rest));
@@ -77,7 +86,8 @@ bool CutBody::update(const State& state) {
   if (!parts_ && !is_swept(state, organ_)) return false;
   prepare();
   if (!parts_->grid.update(state)) return false;
-  parts_->binding.update(parts_->grid.take_changed());
+  const CutGrid::NodeBox changed = parts_->grid.take_changed();
+  parts_->mesher.update(changed), parts_->binding.update(changed);
   rebuild(state);
   return true;
 }
@@ -103,7 +113,7 @@ class CutBody::Rebuilding {
         state_(state),
         near_(grid_.widened(grid_.cut_blocks())),
         meshed_(grid_.widened(near_)),
-        mesh_(make_mesh(grid_, meshed_)),
+        mesh_(body.parts_->mesher.make(meshed_)),
         of_corner_(body.whole_.vertex.size(), -1),
         outer_(mesh_.vertex.size(), -1),
         wall_(mesh_.vertex.size(), -1),
@@ -143,23 +153,29 @@ class CutBody::Rebuilding {
   void push(Index a, Index b, Index c) {
     if (a != b && b != c && c != a) body_.surface_.triangle.push_back({a, b, c});
   }
-  Index add_outer(const CutMesh::Vertex& vertex, bool is_wall) {
-    const SideBinding::Bound& bound = body_.parts_->binding.bind(vertex, true, is_wall, state_);
+  const SideBinding::Bound& bound_of(const CutMesh::Vertex& vertex, bool is_wall) {
+    return body_.parts_->binding.bind(vertex, true, is_wall, state_);
+  }
+  Index add_outer(const SideBinding::Bound& bound) {
     body_.add(bound), body_.origin_.push_back(bound.origin);
     return count() - 1;
   }
-  /// A vertex of the organ's own surface.
+  /// A vertex of the organ's own surface. Far from all cuts (side -1) it goes on as it is.
   Index corner(Index own, Index side) {
     Index& known = of_corner_[std::size_t(own)];
-    if (known < 0) known = add_outer({body_.whole_.vertex[std::size_t(own)], side}, false);
-    return known;
+    if (known >= 0) return known;
+    const CutMesh::Vertex vertex{body_.whole_.vertex[std::size_t(own)], side};
+    if (side >= 0) return known = add_outer(bound_of(vertex, false));
+    std::optional<SideBinding::Bound>& far = body_.parts_->far_bound[std::size_t(own)];
+    if (!far) far = bound_of(vertex, false);
+    return known = add_outer(*far);
   }
   Index outer(Index v) {
     const CutMesh::Vertex& vertex = mesh_.vertex[std::size_t(v)];
     Index& known = outer_[std::size_t(v)];
     if (known >= 0) return known;
     const Index own = near_[std::size_t(grid_.block(vertex.side))] ? -1 : body_.nearest_corner(vertex.rest);
-    return known = own >= 0 ? corner(own, vertex.side) : add_outer(vertex, is_wall_[std::size_t(v)] != 0);
+    return known = own >= 0 ? corner(own, vertex.side) : add_outer(bound_of(vertex, is_wall_[std::size_t(v)] != 0));
   }
   Index wall(Index v) {
     Index& known = wall_[std::size_t(v)];
@@ -180,7 +196,10 @@ class CutBody::Rebuilding {
 void CutBody::rebuild(const State& state) {
   if (!parts_->grid.anything_cut()) return show_whole();
   is_cut_ = true;
-  surface_ = {}, origin_.clear(), surface_.binding.first.push_back(0);
+  // Emptied, so that their memory is used again.
+  SurfaceBinding& binding = surface_.binding;
+  surface_.vertex.clear(), surface_.triangle.clear(), origin_.clear();
+  binding.first.assign(1, 0), binding.sphere.clear(), binding.weight.clear(), binding.turned.clear();
   Rebuilding rebuilding(*this, state);
   rebuilding.add_outer();
   outer_triangles_ = surface_.triangle.size(), outer_vertices_ = surface_.vertex.size();

@@ -160,8 +160,10 @@ CutGrid::Index CutGrid::find_home(Index sphere) const {
     std::vector<Index> next;
     Index best = -1;
     const auto go = [&](Index to, std::size_t by) {
-      const bool is_cut = cuts_.contains(by) && !torn_.contains(by);
-      if (was_seen(to) != 0 || is_cut || outside_.contains(by)) return;
+      const auto is_cut = [&] {
+        return is_parted(Index(by / kDirections), int(by % kDirections)) && cuts_.contains(by) && !torn_.contains(by);
+      };
+      if (was_seen(to) != 0 || is_cut() || (!outside_.empty() && outside_.contains(by))) return;
       was_seen(to) = 1, next.push_back(to);
       if (!in_tissue(to)) return;
       if (best < 0 || std::pair(squared_distance(to), to) < std::pair(squared_distance(best), best)) best = to;
@@ -361,7 +363,8 @@ void CutGrid::take_back_last_row() {
 }
 
 void CutGrid::reset() {
-  if (anything_cut_) changed_ = true, box_ = {{0, 0, 0}, extent_};
+  if (anything_cut_ || !cuts_.empty()) box_ = {{0, 0, 0}, extent_};
+  changed_ = changed_ || anything_cut_;
   for (const auto& [e, cut] : cuts_)
     if (!outer_.contains(e)) parted_[e / kDirections] &= std::uint8_t(~(1 << int(e % kDirections)));
   cuts_.clear(), by_last_.clear(), outside_.clear(), outside_by_last_.clear(), torn_.clear(), torn_tissue_.reset();

@@ -128,6 +128,12 @@ class CutGrid {
     void add(Node n);
   };
   NodeBox take_changed();
+  /// Whether the cube at a node has a node in a box.
+  bool touches(const NodeBox& box, Node cube) const {
+    for (std::size_t a = 0; a < 3; ++a)
+      if (cube[a] + 1 < box.low[a] || cube[a] > box.high[a]) return false;
+    return true;
+  }
   /// Whether a node is at most so many edges from a box.
   bool is_near(const NodeBox& box, Index node, Index hops) const {
     const Node n = this->node(node);

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <unordered_map>
+
+#include "core/cutbody/mesh_lists.h"
 
 namespace ctpm::cutbody {
 namespace {
@@ -19,49 +20,6 @@ Vec3 unit(Vec3 v) {
   const double size = norm(v);
   return size > 0 ? v / size : Vec3{};
 }
-
-/// Vertices by what they lie on, and which of them are the same.
-class Vertices {
- public:
-  explicit Vertices(const CutGrid& grid) : grid_(grid) {}
-
-  /// The vertex on the simplex of `count` nodes (ascending; 2: an edge, 3: a face, 4: a tetrahedron) on the side of
-  /// `side`. `place()` gives its place at rest if it is new.
-  template <class Place>
-  Index at(const Index* nodes, int count, Index side, Place&& place) {
-    const auto [found, is_new] = number_.try_emplace(key(nodes, count, side), Index(all_.size()));
-    if (is_new) all_.push_back({place(), side}), root_.push_back(found->second);
-    return found->second;
-  }
-  void join(Index a, Index b) {
-    a = root(a), b = root(b);
-    root_[std::size_t(std::max(a, b))] = std::min(a, b);
-  }
-  Index root(Index v) {
-    while (root_[std::size_t(v)] != v) v = root_[std::size_t(v)] = root_[std::size_t(root_[std::size_t(v)])];
-    return v;
-  }
-  const CutMesh::Vertex& operator[](Index v) const { return all_[std::size_t(v)]; }
-  std::size_t count() const { return all_.size(); }
-
- private:
-  /// A simplex is known by its lowest node and the directions from it to the others.
-  std::uint64_t key(const Index* nodes, int count, Index side) const {
-    std::uint64_t result = std::uint64_t(nodes[0]) * 8;
-    const CutGrid::Node low = grid_.node(nodes[0]);
-    const auto direction = [&](Index n) {
-      const CutGrid::Node at = grid_.node(n);
-      return std::uint64_t((at[0] - low[0]) | (at[1] - low[1]) << 1 | (at[2] - low[2]) << 2);
-    };
-    for (int i = 1; i < 4; ++i) result = result * 8 + (i < count ? direction(nodes[i]) : 0);
-    return result * 8 + direction(side);
-  }
-
-  const CutGrid& grid_;
-  std::unordered_map<std::uint64_t, Index> number_;
-  std::vector<CutMesh::Vertex> all_;
-  std::vector<Index> root_;
-};
 
 /// A point of the surface in a tetrahedron, on the simplex of `count` of its corners, whose nodes ascend. Each part of
 /// the tissue that meets there has its own place for it: that of the swept surface which is nearest to the part.
@@ -95,25 +53,14 @@ Vec3 meeting_point(Vec3 start, const Plane* planes, int count) {
   return start + Vec3{dot(b, cross(v, w)), dot(u, cross(b, w)), dot(u, cross(v, b))} / volume;
 }
 
-class Mesher {
- public:
-  explicit Mesher(const CutGrid& grid) : grid_(grid), vertices_(grid) {}
+}  // namespace
 
-  /// Of the cubes at nodes [low, high) of the grid.
-  CutMesh run(CutGrid::Node low, CutGrid::Node high, const std::vector<std::uint8_t>& blocks) {
-    for (std::size_t a = 0; a < 3; ++a)
-      low[a] = std::max(low[a], 0), high[a] = std::min(high[a], grid_.extent()[a] - 1);
-    for (Index k = low[2]; k < high[2]; ++k)
-      for (Index j = low[1]; j < high[1]; ++j)
-        for (Index i = low[0]; i < high[0]; ++i) {
-          const Index cube = grid_.at({i, j, k});
-          if (!blocks.empty() && !blocks[std::size_t(grid_.block(cube))]) continue;
-          if (!is_parted(cube)) continue;
-          for (const auto& corners : kTetrahedra) tetrahedron(cube, corners);
-          outer_cube_.resize(outer_.size(), cube), wall_cube_.resize(walls_.size(), cube);
-        }
-    return collect();
-  }
+class Mesher::Parts {
+ public:
+  explicit Parts(const CutGrid& grid) : grid_(grid), vertices_(grid) {}
+
+  void update(const CutGrid::NodeBox& changed);
+  CutMesh run(CutGrid::Node low, CutGrid::Node high, const std::vector<std::uint8_t>& blocks);
 
  private:
   using Triangle = std::array<Index, 3>;
@@ -141,13 +88,21 @@ class Mesher {
   void close_simply();
   void close_from_the_middle();
   Index vertex(const Point& p, int side);
-  void push(bool is_outer, Index a, Index b, Index c) { (is_outer ? outer_ : walls_).push_back({a, b, c}); }
+  struct Corner {
+    const Point& point;
+    int side;
+  };
+  void push(bool is_outer, Corner a, Corner b, Corner c);
+  void join(const Point& point, int a, int b);
+  void cube(Index at);
   CutMesh collect();
 
   const CutGrid& grid_;
   Vertices vertices_;
-  std::vector<Triangle> outer_, walls_;
-  std::vector<Index> outer_cube_, wall_cube_;
+  Cubes now_, before_;
+  CutGrid::NodeBox nothing() const { return {grid_.extent(), {-1, -1, -1}}; }
+  std::vector<std::uint8_t> blocks_before_;  ///< empty: nothing is known of any
+  CutGrid::NodeBox changed_ = nothing();     ///< since the last run
 
   // Of the present tetrahedron.
   Index node_[4];
@@ -160,8 +115,59 @@ class Mesher {
   bool has_middle_ = false;  ///< three parts meet on a face
 };
 
+void Mesher::Parts::update(const CutGrid::NodeBox& changed) {
+  if (changed.low == CutGrid::Node{} && changed.high == grid_.extent()) blocks_before_.clear();
+  if (changed.low[0] <= changed.high[0]) changed_.add(changed.low), changed_.add(changed.high);
+}
+
+/// Of the cubes at nodes [low, high) of the grid.
+CutMesh Mesher::Parts::run(CutGrid::Node low, CutGrid::Node high, const std::vector<std::uint8_t>& blocks) {
+  for (std::size_t a = 0; a < 3; ++a) low[a] = std::max(low[a], 0), high[a] = std::min(high[a], grid_.extent()[a] - 1);
+  std::swap(now_, before_), now_.clear(), vertices_.begin_round();
+  if (blocks_before_.empty()) before_.clear(), vertices_.forget();
+  std::size_t next = 0;
+  for (Index k = low[2]; k < high[2]; ++k)
+    for (Index j = low[1]; j < high[1]; ++j)
+      for (Index i = low[0]; i < high[0]; ++i) {
+        const Index at = grid_.at({i, j, k});
+        const auto block = std::size_t(grid_.block(at));
+        if (!blocks.empty() && blocks[block] == 0) {
+          i |= CutGrid::kPerSpacing - 1;  // to the block's last
+          continue;
+        }
+        const bool is_known =
+            !blocks_before_.empty() && blocks_before_[block] != 0 && !grid_.touches(changed_, {i, j, k});
+        if (!is_known) {
+          cube(at);
+          continue;
+        }
+        while (next < before_.cube.size() && before_.cube[next] < at) ++next;
+        if (next < before_.cube.size() && before_.cube[next] == at) now_.copy(before_, next);
+      }
+  blocks_before_ = blocks, changed_ = nothing();
+  return collect();
+}
+
+void Mesher::Parts::cube(Index at) {
+  if (!is_parted(at)) return;
+  for (const auto& corners : kTetrahedra) tetrahedron(at, corners);
+  now_.close(at);
+}
+
+/// The vertices of joined sides are come across from the last to the first.
+void Mesher::Parts::join(const Point& point, int a, int b) {
+  const Index of_b = vertex(point, b);
+  now_.joined.push_back({vertex(point, a), of_b});
+}
+
+/// As join().
+void Mesher::Parts::push(bool is_outer, Corner a, Corner b, Corner c) {
+  const Index third = vertex(c.point, c.side), second = vertex(b.point, b.side);
+  (is_outer ? now_.outer : now_.wall).push_back({vertex(a.point, a.side), second, third});
+}
+
 /// Whether any edge of a cube's tetrahedra is parted.
-bool Mesher::is_parted(Index cube) const {
+bool Mesher::Parts::is_parted(Index cube) const {
   for (int from = 0; from < 7; ++from)
     for (int to = from + 1; to < 8; ++to)
       if ((from & to) == from && grid_.is_parted(grid_.end(cube, from), to ^ from)) return true;
@@ -169,7 +175,7 @@ bool Mesher::is_parted(Index cube) const {
 }
 
 /// Nodes joined by whole edges share the label of the first of them.
-void Mesher::find_labels() {
+void Mesher::Parts::find_labels() {
   for (int i = 0; i < 4; ++i) label_[i] = in_[i] ? i : -1;
   for (int round = 0; round < 3; ++round)
     for (int i = 0; i < 4; ++i)
@@ -178,7 +184,7 @@ void Mesher::find_labels() {
 }
 
 template <class... Corners>
-Point Mesher::on(Corners... corners) const {
+Point Mesher::Parts::on(Corners... corners) const {
   Point point{{corners...}, int(sizeof...(Corners))};
   std::sort(point.corner, point.corner + point.count, [&](int p, int q) { return node_[p] < node_[q]; });
   return point;
@@ -186,7 +192,7 @@ Point Mesher::on(Corners... corners) const {
 
 /// Where the surface crosses the edge between two corners, nearest to the first of them, which is in tissue. If the
 /// second is outside, that is on the organ's surface, but not beyond a cut that crosses the edge too.
-Plane Mesher::crossing(int a, int b) const {
+Plane Mesher::Parts::crossing(int a, int b) const {
   const bool a_is_lower = node_[a] < node_[b];
   const Index lower = std::min(node_[a], node_[b]), upper = std::max(node_[a], node_[b]);
   const int direction = a_is_lower ? direction_[a][b] : direction_[b][a];
@@ -200,26 +206,27 @@ Plane Mesher::crossing(int a, int b) const {
 }
 
 /// From a place on the organ's surface along it to the cut, unless that is far.
-Vec3 Mesher::on_surface(const Plane& surface, const Plane& cut) const {
+Vec3 Mesher::Parts::on_surface(const Plane& surface, const Plane& cut) const {
   constexpr double kFar = 1.5;  // in steps of the grid
   const Plane planes[2] = {surface, cut};
   const Vec3 there = meeting_point(surface.point, planes, 2);
   return norm(there - surface.point) < kFar * grid_.step() ? there : surface.point;
 }
 
-Index Mesher::vertex(const Point& p, int side) {
+Index Mesher::Parts::vertex(const Point& p, int side) {
   Index nodes[4]{};
   for (int i = 0; i < p.count; ++i) nodes[i] = node_[p.corner[i]];
-  return vertices_.at(nodes, p.count, node_[side], [&] { return place(p, side); });
+  now_.vertex.push_back(vertices_.at(nodes, p.count, node_[side], [&] { return place(p, side); }));
+  return now_.vertex.back();
 }
 
-Vec3 Mesher::place(const Point& p, int side) const {
+Vec3 Mesher::Parts::place(const Point& p, int side) const {
   if (p.count == 2) return crossing(side, p.corner[p.corner[0] == side ? 1 : 0]).point;
   return p.count == 3 ? place_on_face(p, side) : place_within(side);
 }
 
 /// Goes from a place in a simplex towards another, as far as that is in it too.
-Vec3 Mesher::kept_within(const Point& simplex, Vec3 from, Vec3 to) const {
+Vec3 Mesher::Parts::kept_within(const Point& simplex, Vec3 from, Vec3 to) const {
   constexpr double kMargin = 0.02;
   const auto corner = [&](int i) { return grid_.rest(node_[simplex.corner[i]]); };
   double most = 1;
@@ -240,7 +247,7 @@ Vec3 Mesher::kept_within(const Point& simplex, Vec3 from, Vec3 to) const {
 
 /// Where three parts meet on a face. If one is outside, on the organ's surface, which the cut divides as it divides the
 /// edge between the other two.
-Vec3 Mesher::place_on_face(const Point& face, int side) const {
+Vec3 Mesher::Parts::place_on_face(const Point& face, int side) const {
   const int other[2] = {face.corner[face.corner[0] == side ? 1 : 0], face.corner[face.corner[2] == side ? 1 : 2]};
   for (int i = 0; i < 2; ++i) {
     const int outside = other[i], q = other[1 - i];
@@ -261,7 +268,7 @@ Vec3 Mesher::place_on_face(const Point& face, int side) const {
 
 /// Where the parts of a tetrahedron meet, for the part with the label `side`: on the organ's surface, if one is
 /// outside.
-Vec3 Mesher::place_within(int side) const {
+Vec3 Mesher::Parts::place_within(int side) const {
   Vec3 at_surface, sum, to_outside;
   int of_surface = 0, count = 0, of_outside = 0;
   for (int i = 0; i < segment_count_; ++i) {
@@ -287,22 +294,22 @@ Vec3 Mesher::place_within(int side) const {
 }
 
 /// Sides that are joined within the tetrahedron share their vertices on its edges and faces.
-void Mesher::join_where_the_cut_ends() {
+void Mesher::Parts::join_where_the_cut_ends() {
   for (int a = 0; a < 4; ++a)
     for (int b = a + 1; b < 4; ++b) {
       if (!in_[a] || !in_[b] || label_[a] != label_[b] || !parted_[a][b]) continue;
       const Point edge = on(a, b);
-      vertices_.join(vertex(edge, a), vertex(edge, b));
+      join(edge, a, b);
       for (int c = 0; c < 4; ++c) {
         if (c == a || c == b || !parted_[a][c] || !parted_[b][c]) continue;
         const Point face = on(a, b, c);
-        vertices_.join(vertex(face, a), vertex(face, b));
+        join(face, a, b);
       }
     }
 }
 
 /// Finds the segments on a face whose corners run counter-clockwise seen from outside.
-void Mesher::trace_face(const int* face) {
+void Mesher::Parts::trace_face(const int* face) {
   const int parted = parted_[face[0]][face[1]] + parted_[face[1]][face[2]] + parted_[face[2]][face[0]];
   for (int i = 0; i < 3; ++i) {
     const int a = face[i], b = face[(i + 1) % 3], c = face[(i + 2) % 3];
@@ -314,7 +321,7 @@ void Mesher::trace_face(const int* face) {
 }
 
 /// Two parts whose border crosses only edges: a triangle or a quadrilateral, once for each part.
-void Mesher::close_simply() {
+void Mesher::Parts::close_simply() {
   // All segments from the same part's side.
   const int label = label_[segments_[0].a_at_p];
   for (int i = 0; i < segment_count_; ++i) {
@@ -330,23 +337,23 @@ void Mesher::close_simply() {
   const bool in_a = in_[segments_[0].a_at_p], in_b = in_[segments_[0].b_at_p];
   for (int i = 1; i + 1 < segment_count_; ++i) {
     const Segment &s = segments_[0], &t = segments_[i], &u = segments_[i + 1];
-    if (in_a) push(!in_b, vertex(u.p, u.a_at_p), vertex(t.p, t.a_at_p), vertex(s.p, s.a_at_p));
-    if (in_b) push(!in_a, vertex(s.p, s.b_at_p), vertex(t.p, t.b_at_p), vertex(u.p, u.b_at_p));
+    if (in_a) push(!in_b, {u.p, u.a_at_p}, {t.p, t.a_at_p}, {s.p, s.a_at_p});
+    if (in_b) push(!in_a, {s.p, s.b_at_p}, {t.p, t.b_at_p}, {u.p, u.b_at_p});
   }
 }
 
 /// Any number of parts: triangles from their borders on the faces to a point in the middle.
-void Mesher::close_from_the_middle() {
+void Mesher::Parts::close_from_the_middle() {
   const Point apex = on(0, 1, 2, 3);
   for (int i = 0; i < segment_count_; ++i) {
     const Segment& s = segments_[i];
     const int a = label_[s.a_at_p], b = label_[s.b_at_p];
-    if (a >= 0) push(b < 0, vertex(s.q, s.a_at_q), vertex(s.p, s.a_at_p), vertex(apex, a));
-    if (b >= 0) push(a < 0, vertex(s.p, s.b_at_p), vertex(s.q, s.b_at_q), vertex(apex, b));
+    if (a >= 0) push(b < 0, {s.q, s.a_at_q}, {s.p, s.a_at_p}, {apex, a});
+    if (b >= 0) push(a < 0, {s.p, s.b_at_p}, {s.q, s.b_at_q}, {apex, b});
   }
 }
 
-void Mesher::tetrahedron(Index cube, const int* corners) {
+void Mesher::Parts::tetrahedron(Index cube, const int* corners) {
   bool any = false;
   for (int i = 0; i < 4; ++i) node_[i] = grid_.end(cube, corners[i]), in_[i] = grid_.in_tissue(node_[i]);
   for (int a = 0; a < 4; ++a)
@@ -375,44 +382,57 @@ void Mesher::tetrahedron(Index cube, const int* corners) {
 }
 
 /// Numbers the vertices, leaves out walls whose two sides are one, and puts the outer triangles first.
-CutMesh Mesher::collect() {
-  CutMesh mesh;
-  std::vector<Index> number(vertices_.count(), -1);
-  for (std::vector<Triangle>* list : {&outer_, &walls_})
-    for (Triangle& t : *list)
-      for (Index& v : t) v = vertices_.root(v);
-  const auto sorted = [](Triangle t) {
+CutMesh Mesher::Parts::collect() {
+  std::vector<Index> place(vertices_.count(), -1), at_place;  // in the order in which they were come across
+  JoinedVertices joined;
+  for (const Index v : now_.vertex)
+    if (place[std::size_t(v)] < 0) place[std::size_t(v)] = joined.add(), at_place.push_back(v);
+  for (const auto& [a, b] : now_.joined) joined.join(place[std::size_t(a)], place[std::size_t(b)]);
+  const auto roots = [&](Triangle t) {
+    for (Index& v : t) v = joined.root(place[std::size_t(v)]);
+    return t;
+  };
+  const auto sorted = [&](Triangle t) {
+    t = roots(t);
     std::sort(t.begin(), t.end());
     return t;
   };
   std::map<Triangle, int> copies;
-  for (const Triangle& t : walls_) ++copies[sorted(t)];
-  const auto add = [&](Triangle t) {
+  for (const Triangle& t : now_.wall) ++copies[sorted(t)];
+  CutMesh mesh;
+  std::vector<Index> number(at_place.size(), -1);
+  const auto add = [&](Index cube, Triangle t) {
+    t = roots(t);
     for (Index& v : t) {
-      if (number[std::size_t(v)] < 0)
-        number[std::size_t(v)] = Index(mesh.vertex.size()), mesh.vertex.push_back(vertices_[v]);
-      v = number[std::size_t(v)];
+      Index& n = number[std::size_t(v)];
+      if (n < 0) n = Index(mesh.vertex.size()), mesh.vertex.push_back(vertices_[at_place[std::size_t(v)]]);
+      v = n;
     }
-    mesh.triangle.push_back(t);
+    mesh.triangle.push_back(t), mesh.cube.push_back(cube);
   };
-  for (const Triangle& t : outer_) add(t);
-  mesh.outer_triangles = mesh.triangle.size();
-  mesh.cube = std::move(outer_cube_);
-  for (std::size_t t = 0; t < walls_.size(); ++t)
-    if (copies[sorted(walls_[t])] == 1) add(walls_[t]), mesh.cube.push_back(wall_cube_[t]);
+  std::size_t next = 0;
+  for (std::size_t c = 0; c < now_.cube.size(); ++c)
+    for (; next < now_.end[c].outer; ++next) add(now_.cube[c], now_.outer[next]);
+  mesh.outer_triangles = mesh.triangle.size(), next = 0;
+  for (std::size_t c = 0; c < now_.cube.size(); ++c)
+    for (; next < now_.end[c].wall; ++next)
+      if (copies[sorted(now_.wall[next])] == 1) add(now_.cube[c], now_.wall[next]);
   return mesh;
 }
 
-}  // namespace
+Mesher::Mesher(const CutGrid& grid) : parts_(std::make_unique<Parts>(grid)), grid_(grid) {}
+Mesher::~Mesher() = default;
 
-CutMesh make_mesh(const CutGrid& grid, const std::vector<std::uint8_t>& blocks) {
-  return Mesher(grid).run({0, 0, 0}, grid.extent(), blocks);
-}
+void Mesher::update(const CutGrid::NodeBox& changed) { parts_->update(changed); }
+
+CutMesh Mesher::make(const std::vector<std::uint8_t>& blocks) { return parts_->run({0, 0, 0}, grid_.extent(), blocks); }
+
+CutMesh make_mesh(const CutGrid& grid) { return Mesher(grid).make({}); }
 
 CutMesh make_mesh_around(const CutGrid& grid, CutGrid::Index block) {
   CutGrid::Node low = grid.first_node(block), high = low;
   for (std::size_t a = 0; a < 3; ++a) low[a] -= 1, high[a] += CutGrid::kPerSpacing + 1;
-  return Mesher(grid).run(low, high, {});
+  return Mesher::Parts(grid).run(low, high, {});
 }
 
 std::int32_t count_pieces(const CutGrid& grid) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/cutbody/cut_grid.h"
@@ -25,9 +26,27 @@ struct CutMesh {
 /// share one label, and a surface separates each two labels, and each from what is outside, once for each side. The
 /// surface goes through the crossings of the edges. Where two labels are joined beyond an edge or a face of the
 /// tetrahedron, the cut ends there, and its two sides meet. Every edge therefore belongs to two triangles: the mesh is
-/// watertight, and has a closed component for each piece of tissue. `blocks`: those of the grid that are meant, all if
-/// it is empty (CutGrid::block_count).
-CutMesh make_mesh(const CutGrid& grid, const std::vector<std::uint8_t>& blocks = {});
+/// watertight, and has a closed component for each piece of tissue.
+CutMesh make_mesh(const CutGrid& grid);
+
+/// Makes the mesh of a grid again and again, anew only where it changed in between.
+class Mesher {
+ public:
+  /// `grid` must outlive the Mesher.
+  explicit Mesher(const CutGrid& grid);
+  ~Mesher();
+
+  /// Follows the grid, of which edges in a box have changed.
+  void update(const CutGrid::NodeBox& changed);
+  /// The same as make_mesh(), but only of the cubes in these blocks of the grid; in all if there are none.
+  CutMesh make(const std::vector<std::uint8_t>& blocks);
+
+ private:
+  friend CutMesh make_mesh_around(const CutGrid& grid, CutGrid::Index block);
+  class Parts;
+  std::unique_ptr<Parts> parts_;
+  const CutGrid& grid_;
+};
 
 /// The same of one block of the grid and the cubes around it: within the block, vertices and triangles are those of the
 /// whole mesh.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <utility>
 
 namespace ctpm::cutbody {
@@ -74,19 +75,22 @@ std::span<const JoinedSpheres::Joined> JoinedSpheres::around(Vec3 rest, Index si
     return joined_;
   }
   find_nodes(rest, side);
-  known_.clear();
+  sum_.resize(std::size_t(grid_.sphere_count()), 0), is_known_.resize(sum_.size() / kWord + 1, 0);
   double total = 0;
   for (const Weighted& n : nodes_) {
     total += n.weight;
+    std::array<double, kPart.size()> share;
+    for (std::size_t detour = 0; detour < share.size(); ++detour) share[detour] = n.weight * kPart[detour];
     for (const Sight::Seen::Sphere& s : seen_from(n.node).sphere) {
-      if (std::size_t(s.sphere) >= sum_.size()) sum_.resize(std::size_t(s.sphere) + 1, 0);
-      double& sum = sum_[std::size_t(s.sphere)];
-      if (sum == 0) known_.push_back(s.sphere);
-      sum += n.weight * kPart[std::size_t(s.detour)];
+      sum_[std::size_t(s.sphere)] += share[std::size_t(s.detour)];
+      is_known_[std::size_t(s.sphere) / kWord] |= std::uint64_t(1) << (std::size_t(s.sphere) % kWord);
     }
   }
-  std::sort(known_.begin(), known_.end());
-  for (const Index s : known_) joined_.push_back({s, std::exchange(sum_[std::size_t(s)], 0) / total});
+  for (std::size_t word = 0; word < is_known_.size(); ++word)
+    for (std::uint64_t left = std::exchange(is_known_[word], 0); left != 0; left &= left - 1) {
+      const std::size_t s = word * kWord + std::size_t(std::countr_zero(left));
+      joined_.push_back({Index(s), std::exchange(sum_[s], 0) / total});
+    }
   return joined_;
 }
 

@@ -65,8 +65,9 @@ class JoinedSpheres {
   Sight sight_;
   std::unordered_map<Index, Known> seen_;
   std::vector<Weighted> nodes_;
-  std::vector<double> sum_;   ///< of each sphere; 0 between calls
-  std::vector<Index> known_;  ///< spheres of which the sum is not 0
+  static constexpr std::size_t kWord = 64;
+  std::vector<double> sum_;              ///< of each sphere; 0 between calls
+  std::vector<std::uint64_t> is_known_;  ///< a bit for each sphere of which the sum is not 0
   std::vector<Joined> joined_;
 };
 

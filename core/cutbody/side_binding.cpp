@@ -1,13 +1,12 @@
 #include "core/cutbody/side_binding.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <utility>
 
+#include "core/cutbody/place_hash.h"
 #include "core/cutting/blade_geometry.h"
 #include "core/surface/surface.h"
 
@@ -133,10 +132,7 @@ SideBinding::SideBinding(const Model& model, const CutGrid& grid)
 
 /// Vertices of one side differ in their places.
 std::size_t SideBinding::KeyHash::operator()(const Key& key) const {
-  std::size_t hash = std::hash<Index>()(key.side);
-  for (const double x : {key.x, key.y, key.z})
-    hash = std::rotl(hash, 23) * 0x9e3779b97f4a7c15u ^ std::hash<double>()(x);
-  return hash + 2 * std::size_t(key.is_outer) + std::size_t(key.is_wall);
+  return hash_of(key.place) + 4 * std::size_t(key.side) + 2 * std::size_t(key.is_outer) + std::size_t(key.is_wall);
 }
 
 void SideBinding::update(CutGrid::NodeBox changed) {
@@ -239,8 +235,7 @@ Vec3 SideBinding::near_cut(Vec3 rest, const State& state) {
 
 const SideBinding::Bound& SideBinding::bind(const CutMesh::Vertex& vertex, bool is_outer, bool is_wall,
                                             const State& state) {
-  const auto [found, is_new] =
-      bound_.try_emplace({vertex.side, vertex.rest.x, vertex.rest.y, vertex.rest.z, is_outer, is_wall});
+  const auto [found, is_new] = bound_.try_emplace({vertex.side, vertex.rest, is_outer, is_wall});
   Entry& entry = found->second;
   if (!is_new && entry.round == joined_.round()) return entry.bound;
   ++asked_;

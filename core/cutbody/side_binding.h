@@ -60,7 +60,7 @@ class SideBinding {
  private:
   struct Key {
     Index side;
-    double x, y, z;
+    Vec3 place;
     bool is_outer, is_wall;
     friend bool operator==(const Key&, const Key&) = default;
   };

@@ -15,6 +15,7 @@
 #include "studio/output/files.h"
 #include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
+#include "studio/render/cut_surface.h"
 
 namespace ctpm::film {
 namespace {
@@ -73,7 +74,13 @@ Result<StageTimes> make_film(std::vector<Reel>& reels, video::VideoWriter& write
   const std::int64_t frames = reels[0].ticks.frame_count;
   std::int64_t drawn = 0;
   FilmWork work;
-  for (Reel& reel : reels) work.shoot.push_back([&reel](std::int64_t frame) { return reel.shoot(frame); });
+  for (Reel& reel : reels)
+    work.shoot.push_back([&reel](std::int64_t frame) {
+      Result<Shot> shot = reel.shoot(frame);
+      for (render::CutSurface& cut : *reel.renderer->scene().cuts)
+        if (shot) cut.follow_ahead(shot->state);
+      return shot;
+    });
   work.draw = [&](std::vector<Shot> shots) -> Result<render::Frame> {
     // Ctrl-C is an error of this export: nothing is left behind.
     if (options.should_stop && options.should_stop())

@@ -27,6 +27,10 @@ class CutSurface {
   /// Takes over the cuts of `state`. Returns whether surface() changed.
   bool update(const State& state);
 
+  /// Finds the surface of a State that update() will be called with, so that it need not. For another thread than all
+  /// else; the States must come in the order in which they are drawn.
+  void follow_ahead(const State& state);
+
   /// How often surface() has changed.
   std::uint64_t changes() const;
 

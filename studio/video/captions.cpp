@@ -6,7 +6,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <map>
 
 namespace ctpm::video {
 namespace {
@@ -164,36 +163,10 @@ std::string with_title(const std::string& own, std::string title) {
   return own.substr(0, meta.at) + box("meta", before + longer + after) + own.substr(end);
 }
 
-/// How the colours of H.264 are coded: primaries, curve and matrix of BT.709, not the full range.
-std::string colour_box() { return box("colr", Bytes().raw("nclx").u16(1).u16(1).u16(1).u8(0).text); }
-
-/// The boxes with what says how colours are coded, in each video track.
-std::string with_colours(const std::string& bytes) {
-  /// Boxes that hold boxes, and what they hold before them.
-  static const std::map<std::string, std::size_t> kHolders{{"trak", 0}, {"mdia", 0}, {"minf", 0},
-                                                           {"stbl", 0}, {"stsd", 8}, {"avc1", 78}};
-  std::string result;
-  for (std::size_t at = 0; at + 8 <= bytes.size();) {
-    const std::size_t size = number(bytes, at, 4);
-    if (size < 8 || at + size > bytes.size()) return bytes;
-    const std::string kind = bytes.substr(at + 4, 4), whole = bytes.substr(at, size);
-    const auto holder = kHolders.find(kind);
-    if (holder == kHolders.end() || size < 8 + holder->second) {
-      result += whole;
-    } else {
-      const std::string inside = with_colours(whole.substr(8 + holder->second));
-      const bool is_bare = kind == "avc1" && find_box(inside, 0, inside.size(), "colr").at == std::string::npos;
-      result += box(kind.c_str(), whole.substr(8, holder->second) + inside + (is_bare ? colour_box() : ""));
-    }
-    at += size;
-  }
-  return result;
-}
-
 /// The index with one more track, and with chapters; empty if it has no header.
 std::string with_captions(const std::string& movie, const std::vector<Caption>& captions,
                           const std::vector<Sample>& samples, std::uint64_t first_byte) {
-  std::string content = with_colours(movie.substr(8));
+  std::string content = movie.substr(8);
   const Place header = find_box(content, 0, content.size(), "mvhd");
   constexpr std::size_t kHeaderSize = 108;  // of version 0
   if (header.size != kHeaderSize) return "";

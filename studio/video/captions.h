@@ -15,8 +15,8 @@ struct Caption {
 };
 
 /// Adds a subtitle track (3GPP timed text) and chapters to a complete MP4 file whose index is at its end. `captions`
-/// are in order and do not overlap; the first one is the video's title, too. The pictures stay as they are; how
-/// VideoWriter codes their colours is stated (BT.709). Errors: the file has another form or cannot be written.
+/// are in order and do not overlap; the first one is the video's title, too. The pictures stay as they are. Errors: the
+/// file has another form or cannot be written.
 Result<Done> add_captions(const std::string& path, const std::vector<Caption>& captions);
 
 }  // namespace ctpm::video

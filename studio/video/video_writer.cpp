@@ -13,6 +13,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "studio/video/h264_file.h"
+
 namespace ctpm::video {
 namespace {
 
@@ -21,13 +23,14 @@ namespace fs = std::filesystem;
 /// One video format.
 struct Format {
   int fourcc;   ///< 0: PNG pictures
-  int backend;  ///< of OpenCV
+  int backend;  ///< of OpenCV, which reads H.264 but does not write it
   const char* codec;
   const char* container;  ///< for people
   const char* ending;     ///< of the requested path
   const char* written;    ///< its replacement in the written path
 
   bool is_pictures() const { return fourcc == 0; }
+  bool is_h264() const { return backend == cv::CAP_FFMPEG; }
 };
 
 /// Best first: each is the fallback of the one before.
@@ -46,21 +49,6 @@ std::size_t format_asked_for(const std::string& path) {
   std::size_t i = 0;
   while (i < formats().size() && !path.ends_with(formats()[i].ending)) ++i;
   return i;
-}
-
-/// The encoder codes colours with the matrix of BT.601, players of high definition expect that of BT.709. What this
-/// matrix makes of a colour (blue, green, red) is coded by the one as the colour itself by the other. Only colours
-/// purer than tissue, steel and text leave the range.
-const cv::Matx33f& coded_as_bt709() {
-  static const cv::Matx33f matrix = [] {
-    // Rows: Y, Cb, Cr of blue, green, red.
-    const auto coding = [](float red, float blue) {
-      const float green = 1 - red - blue, b = 2 * (1 - blue), r = 2 * (1 - red);
-      return cv::Matx33f(blue, green, red, (1 - blue) / b, -green / b, -red / b, -blue / r, -green / r, (1 - red) / r);
-    };
-    return coding(0.299f, 0.114f).inv() * coding(0.2126f, 0.0722f);
-  }();
-  return matrix;
 }
 
 /// The picture of frame `index` in a folder, from 1.
@@ -105,12 +93,18 @@ struct VideoWriter::Parts {
   double fps = 0;
   std::int64_t frames = 0;
   bool is_finished = false;
-  cv::VideoWriter writer;
+  std::unique_ptr<H264File> h264;
+  cv::VideoWriter motion_jpeg;
   cv::Mat bgr;
 
   Result<Done> open_first(std::size_t asked_for);
-  bool open(const Format& wanted);
+  bool open();
   Result<Done> open_pictures();
+  Result<Done> close();
+  /// The same of the finished video, which has another name until it is.
+  Result<Done> of_video(const Result<Done>& done) const {
+    return done ? done : Error{path, done.errors()[0].message, done.errors()[0].hint};
+  }
   void discard();
   Result<Done> put(const render::Frame& frame);
   Result<VideoFacts> check_file() const;
@@ -129,17 +123,18 @@ Result<Done> VideoWriter::Parts::open_first(std::size_t asked_for) {
     if (format.is_pictures()) return open_pictures();
     if (const int failed = cannot_write(part); failed != 0)
       return Error{path, std::string("cannot be written: ") + std::strerror(failed), ""};
-    if (open(format)) return Done{};
+    if (open()) return Done{};
   }
   return Error{path, "no format can be written", ""};
 }
 
-bool VideoWriter::Parts::open(const Format& wanted) {
+bool VideoWriter::Parts::open() {
   try {
-    // Quality is the encoder's own constant-quality default for H.264, and near lossless for Motion JPEG.
-    std::vector<int> settings{cv::VIDEOWRITER_PROP_QUALITY, 95};
-    if (wanted.backend == cv::CAP_FFMPEG) settings.clear();
-    if (writer.open(part, wanted.backend, wanted.fourcc, fps, {width, height}, settings)) return true;
+    constexpr int kNearlyLossless = 95;
+    if (format.is_h264() ? (h264 = H264File::create(part, width, height, fps)) != nullptr
+                         : motion_jpeg.open(part, format.backend, format.fourcc, fps, {width, height},
+                                            {cv::VIDEOWRITER_PROP_QUALITY, kNearlyLossless}))
+      return true;
   } catch (const cv::Exception&) {
     // Try the next format; the note says so.
   }
@@ -157,7 +152,7 @@ Result<Done> VideoWriter::Parts::open_pictures() {
 }
 
 void VideoWriter::Parts::discard() {
-  writer.release();
+  h264.reset(), motion_jpeg.release();
   std::error_code ignored;
   if (!part.empty()) fs::remove_all(part, ignored);
 }
@@ -168,15 +163,20 @@ Result<Done> VideoWriter::Parts::put(const render::Frame& frame) {
     if (written) return written;
     return Error{picture_path(path, frames + 1).string(), written.errors()[0].message, "check the free space"};
   }
+  if (h264) return of_video(h264->add(frame));
   try {
     const cv::Mat rgb(frame.height, frame.width, CV_8UC3, const_cast<std::uint8_t*>(frame.rgb.data()));
     cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-    if (format.backend == cv::CAP_FFMPEG) cv::transform(bgr, bgr, coded_as_bt709());
-    writer.write(bgr);
+    motion_jpeg.write(bgr);
   } catch (const cv::Exception& problem) {
     return Error{path, "a frame could not be written: " + problem.err, ""};
   }
   return Done{};
+}
+
+Result<Done> VideoWriter::Parts::close() {
+  motion_jpeg.release();
+  return h264 ? of_video(h264->finish()) : Done{};
 }
 
 /// Reopens the closed temporary file and counts its frames.
@@ -238,7 +238,7 @@ Errors VideoWriter::check(const std::string& path, int width, int height, double
   return errors;
 }
 
-std::string video_library() { return "OpenCV " CV_VERSION; }
+std::string video_library() { return H264File::library() + ", OpenCV " CV_VERSION; }
 
 VideoWriter::VideoWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
@@ -276,8 +276,12 @@ Result<VideoFacts> VideoWriter::finish(const std::vector<Caption>& captions) {
   Parts& p = *parts_;
   if (p.is_finished) return Error{p.path, "the video is finished already", ""};
   p.is_finished = true;
-  p.writer.release();
   Result<VideoFacts> facts = Error{p.path, "a video needs at least one frame", ""};
+  if (p.frames > 0)
+    if (const Result<Done> closed = p.close(); !closed) {
+      p.discard();
+      return closed.errors();
+    }
   if (p.frames > 0 && p.path.ends_with(".mp4"))
     if (const Result<Done> added = add_captions(p.part, captions); !added) {
       p.discard();

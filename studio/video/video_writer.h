@@ -22,7 +22,7 @@ struct VideoFacts {
   std::int64_t bytes = 0;
 };
 
-/// Name and version of the encoding library.
+/// Names and versions of the encoding libraries.
 std::string video_library();
 
 /// Writes frames to a video of constant frame rate. The end of the path selects the format: `.mp4` is H.264, `.avi`

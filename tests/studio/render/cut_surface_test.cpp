@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <thread>
 
 #include "core/stepping/step.h"
 #include "core/surface/surface.h"
@@ -37,6 +38,29 @@ TEST(CutSurface, WithoutACutIsTheWholeSurface) {
   EXPECT_TRUE(cut_surface.update(rest_state(scene->model)));
   EXPECT_EQ(cut_surface.surface().triangle, scene->model.surfaces[0].triangle);
   EXPECT_EQ(cut_surface.outer_triangle_count(), scene->model.surfaces[0].triangle.size());
+}
+
+TEST(CutSurface, FollowedAheadInAnotherThreadItIsTheSame) {
+  const auto scene = make_blob_scene();
+  std::vector<State> states{rest_state(scene->model)};
+  for (const double to : {0.0, 0.01, 0.01, 0.02}) states.push_back(cut_along_y(scene->model, -0.01, to, 0));
+  render::CutSurface alone(scene->model, 0), ahead(scene->model, 0);
+  std::thread([&] {
+    for (const State& state : states) ahead.follow_ahead(state);
+  }).join();
+  states.push_back(cut_along_y(scene->model, -0.01, 0.03, 0));  // nobody followed this one
+  states.push_back(states[2]);
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const bool changes = alone.update(states[i]);
+    EXPECT_EQ(ahead.update(states[i]), changes) << i;
+    EXPECT_FALSE(ahead.update(states[i])) << i;
+    EXPECT_EQ(ahead.surface().vertex, alone.surface().vertex) << i;
+    EXPECT_EQ(ahead.surface().triangle, alone.surface().triangle) << i;
+    EXPECT_EQ(ahead.surface().binding.weight, alone.surface().binding.weight) << i;
+    EXPECT_EQ(ahead.outer_triangle_count(), alone.outer_triangle_count()) << i;
+    EXPECT_EQ(ahead.is_lip(), alone.is_lip()) << i;
+    EXPECT_EQ(ahead.rind(), alone.rind()) << i;
+  }
 }
 
 TEST(CutSurface, TheOuterSurfaceKeepsItsArea) {
