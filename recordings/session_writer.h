@@ -13,7 +13,7 @@ namespace ctpm::recordings {
 struct WriterOptions {
   bool overwrite = false;              ///< replaces an existing file; false: an existing file is an error
   bool wait_when_full = false;         ///< append() waits for the disk instead of losing ticks; for offline runs
-  std::int32_t keyframe_ticks = 500;   ///< ticks between keyframes, >= 1; a seek simulates at most this many
+  std::int32_t keyframe_ticks = 1000;  ///< ticks between keyframes, >= 1; a seek simulates at most this many
   std::int32_t queue_ticks = 1 << 16;  ///< queue capacity [ticks], >= 200; ticks beyond it are lost
   int compression_level = 3;           ///< zstd, in [1, 19]
 };

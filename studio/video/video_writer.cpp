@@ -10,6 +10,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
+#include <opencv2/videoio/registry.hpp>
 #include <string_view>
 #include <system_error>
 
@@ -131,6 +132,11 @@ Result<Done> VideoWriter::Parts::open_first(std::size_t asked_for) {
 bool VideoWriter::Parts::open() {
   try {
     constexpr int kNearlyLossless = 95;
+    // What is written is opened again and counted, so there must be a reader, too.
+    if (!cv::videoio_registry::hasBackend(cv::VideoCaptureAPIs(format.backend))) {
+      discard();
+      return false;
+    }
     if (format.is_h264() ? (h264 = H264File::create(part, width, height, fps)) != nullptr
                          : motion_jpeg.open(part, format.backend, format.fourcc, fps, {width, height},
                                             {cv::VIDEOWRITER_PROP_QUALITY, kNearlyLossless}))

@@ -184,13 +184,20 @@ inline constexpr GoldenRow kGoldenRevision11[] = {
     {"touched edge, sdirk2", {0xccc1a61582d3eac9, 0x7967bc15e25051f8, 0x41e7c1b99d7c3771, 0x34421e88bae98d8b}},
 };
 
+inline constexpr GoldenRow kGoldenRevision12[] = {
+    {"full, auto", {0xb6c71a93224b3c05, 0x532dc5c79cc197c6, 0x0922fef65a623495, 0xe06caca2b11b3409}},
+    {"full, sdirk2", {0x2a0b2e3c0646e61e, 0x4b236292430c12aa, 0xe7b05e8f9cc1578c, 0xb4e290deb5fdbec4}},
+    {"light, backward-euler", {0xd3d3d238bbc81e70, 0xd3b269e181b3410a, 0x3b55a49b519bcfeb, 0x56a54a001e7af068}},
+    {"light, sdirk2", {0xd26734d372d4df92, 0x24a6390d14dc60ab, 0x5f5d7a5e7901fd9d, 0x252c4f6dd5862a1b}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},   {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189},   {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
     {5, kGoldenRevision5, 0xde01e1a50a84c47a},   {6, kGoldenRevision6, 0xa6eef089d8c4a783},
     {7, kGoldenRevision7, 0xe9b636c6028e3176},   {8, kGoldenRevision8, 0x7b7d2031be004e94},
     {9, kGoldenRevision9, 0xb75cb37d4faeb3c5},   {10, kGoldenRevision10, 0x6d5ddd69b485de71},
-    {11, kGoldenRevision11, 0x4162fa4fa1d24cae},
+    {11, kGoldenRevision11, 0x4162fa4fa1d24cae}, {12, kGoldenRevision12, 0x1a990242ddda6fc4},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

@@ -24,8 +24,8 @@ std::vector<Tool> tools_of(const Model& model) {
 }
 
 /// Soft enough for one step of leapfrog in a tick; nothing holds it unless `is_anchored`.
-Model block(Integrator integrator, bool is_anchored = true) {
-  network::Material material = testing::resisting(20, 500);
+Model block(Integrator integrator, bool is_anchored = true, double toughness = 20) {
+  network::Material material = testing::resisting(toughness, 500);
   material.viscosity = 5e3, material.stiffness_scale = 0.05;
   Model model = testing::make_skinned_block(5, 5, 4, network::Structure::mass_spring, 0.003, material);
   if (!is_anchored) model.held_axes.assign(model.sphere_count(), 0);
@@ -172,7 +172,8 @@ TEST_P(Hands, TwoPinsHoldTheirSpheresWhereTheHandsAre) {
 }
 
 TEST_P(Hands, NeitherThreadsNorAFreshStartChangeABit) {
-  const Model model = block(GetParam());
+  // So weak that the blade cuts it rather than to take it along: the ball finds the cut where it was made.
+  const Model model = block(GetParam(), true, 5);
   const cutbody::CutPoints points(model);
   std::vector<State> runs;
   bool touches_cut = false;
