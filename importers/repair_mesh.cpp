@@ -217,6 +217,9 @@ class Repair {
       ++dropped, dropped_triangles += std::int64_t(piece.soup.triangle.size());
       if (!drop.place) drop.place = bounding_box(piece.soup).centre();
     }
+    // Nothing is left of sheets that meet at one edge: each is a wall to the others.
+    if (organs_.empty() && open.empty())
+      return {{path_, "the mesh bounds no volume", "it is a sheet; export a closed surface"}};
     if (organs_.empty() || are_crumbs(open)) return open;
     if (!filled.empty())
       note({"hole", std::int64_t(filled.size()), widest(filled).centre,

@@ -164,6 +164,21 @@ TEST(Repair, DuplicateFacesAreDropped) {
   EXPECT_EQ(mesh->triangle.size(), ball().triangle.size());
 }
 
+TEST(Repair, SheetsThatMeetAtOneEdgeAreRefused) {
+  importers::RawMesh fan;
+  fan.path = "fan.obj";
+  fan.vertex = {{0, 0, 0}, {1, 0, 0}, {0, 0, -1}, {1, 1, -1}, {0, 1, 0}};
+  fan.triangle = {{1, 3, 0}, {0, 2, 1}, {0, 4, 1}};
+  for (const bool all_parts : {false, true}) {
+    importers::RepairOptions options;
+    options.all_parts = all_parts;
+    const Result<importers::CheckedMesh> mesh = importers::repair_mesh(fan, 1, options);
+    ASSERT_FALSE(mesh);
+    EXPECT_EQ(mesh.errors()[0].where, "fan.obj");
+    EXPECT_FALSE(importers::repair_parts(fan, 1, options, 8));
+  }
+}
+
 TEST(Repair, DegenerateFacesAreDropped) {
   importers::RawMesh raw = ball();
   raw.triangle.push_back({3, 3, 4});
