@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include <algorithm>
 
 #include "recordings/session_reader.h"
@@ -202,46 +204,53 @@ int pixels_of(const Model& model, const State& state, Vec3 at, const render::Cam
   return green_pixels(plain, state, options);
 }
 
+/// What a camera on an event is found from in a shipped session.
+struct Told {
+  recordings::SessionReader reader;
+  State state;
+  scenes::SceneText text;
+  render::SceneView view;
+};
+std::unique_ptr<Told> told_of(const std::string& name) {
+  auto reader = recordings::SessionReader::open(std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/" + name + ".ctpm");
+  if (!reader) return nullptr;
+  const session::TickRange whole{0, reader->tick_count()};
+  const auto all = film::all_moments(*reader, whole);
+  if (!all) return nullptr;
+  auto told = film::telling_state(*reader, whole, *all);
+  auto text = scenes::read_scene(reader->start().scene_text, "scene");
+  if (!told || !text) return nullptr;
+  auto result = std::make_unique<Told>(Told{std::move(*reader), std::move(*told), std::move(*text), {}});
+  result->view = views::view_of(result->text.spec, result->reader.start().model);
+  return result;
+}
+
 TEST(PressCamera, SeesThePressedTissueOfEachSession) {
   for (const char* name : {"liver-press-expert", "liver-press-clumsy"}) {
-    auto reader =
-        recordings::SessionReader::open(std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/" + name + ".ctpm");
-    ASSERT_TRUE(reader);
-    const session::TickRange whole{0, reader->tick_count()};
-    const auto all = film::all_moments(*reader, whole);
-    ASSERT_TRUE(all);
-    const auto told = film::telling_state(*reader, whole, *all);
-    const auto text = scenes::read_scene(reader->start().scene_text, "scene");
-    ASSERT_TRUE(told && text);
-    const render::SceneView view = views::view_of(text->spec, reader->start().model);
+    const auto shipped = told_of(name);
+    ASSERT_NE(shipped, nullptr) << name;
+    const auto& [reader, told, text, view] = *shipped;
     views::LookRequest request;
-    const auto chosen = views::find_look(request, text->spec, view, kAspect, &*told);
+    const auto chosen = views::find_look(request, text.spec, view, kAspect, &told);
     request.camera = "front";
-    const auto front = views::find_look(request, text->spec, view, kAspect, &*told);
+    const auto front = views::find_look(request, text.spec, view, kAspect, &told);
     ASSERT_TRUE(chosen && front);
     EXPECT_EQ(chosen->camera, "press") << name;
     const auto seen = [&](const views::Look& look) {
-      return pixels_of(reader->start().model, *told, told->last_inputs.position, look.draw.camera);
+      return pixels_of(reader.start().model, told, told.last_inputs.position, look.draw.camera);
     };
     EXPECT_GT(2 * seen(*chosen), 3 * seen(*front)) << name;
-    const render::Pixel at = render::project(chosen->draw.camera, 1280, 720, told->last_inputs.position);
+    const render::Pixel at = render::project(chosen->draw.camera, 1280, 720, told.last_inputs.position);
     EXPECT_TRUE(at.x > 400 && at.x < 880 && at.y > 150 && at.y < 570) << at.x << ", " << at.y;
   }
 }
 
 TEST(EventCamera, TheWholeOrganIsInThePictureOfEachSession) {
   for (const char* name : {"liver-press-expert", "liver-press-clumsy", "kidney-cut-expert", "kidney-cut-clumsy"}) {
-    auto reader =
-        recordings::SessionReader::open(std::string(CTPM_SOURCE_DIR) + "/recordings/shipped/" + name + ".ctpm");
-    ASSERT_TRUE(reader);
-    const session::TickRange whole{0, reader->tick_count()};
-    const auto all = film::all_moments(*reader, whole);
-    ASSERT_TRUE(all);
-    const auto told = film::telling_state(*reader, whole, *all);
-    const auto text = scenes::read_scene(reader->start().scene_text, "scene");
-    ASSERT_TRUE(told && text);
-    const render::SceneView view = views::view_of(text->spec, reader->start().model);
-    const auto chosen = views::find_look({}, text->spec, view, kAspect, &*told);
+    const auto shipped = told_of(name);
+    ASSERT_NE(shipped, nullptr) << name;
+    const auto& [reader, told, text, view] = *shipped;
+    const auto chosen = views::find_look({}, text.spec, view, kAspect, &told);
     ASSERT_TRUE(chosen);
     int in = 0, points = 0;
     for (const Vec3& point : render::rest_points(view)) {
