@@ -194,6 +194,7 @@ class Repair {
   /// where only the largest is kept, that one.
   Errors keep_closed_parts() {
     const double largest_hole = options_.largest_hole.value_or(kHoleShare * diagonal_);
+    const Errors is_sheet{{path_, "the mesh bounds no volume", "it is a sheet; export a closed surface"}};
     std::vector<Hole> filled;
     Errors open;
     std::int64_t dropped = 0, dropped_triangles = 0, cavities = 0;
@@ -203,8 +204,7 @@ class Repair {
       if (around != nullptr || is_wanted(piece)) {
         const Closing closing = fill_holes(piece.soup, largest_hole);
         Errors why = describe(closing, largest_hole);
-        if (why.empty() && is_flat(piece.soup))
-          why = {{path_, "the mesh bounds no volume", "it is a sheet; export a closed surface"}};
+        if (why.empty() && is_flat(piece.soup)) why = is_sheet;
         if (why.empty()) {
           filled.insert(filled.end(), closing.filled.begin(), closing.filled.end());
           if (around != nullptr) ++cavities;
@@ -218,8 +218,7 @@ class Repair {
       if (!drop.place) drop.place = bounding_box(piece.soup).centre();
     }
     // Nothing is left of sheets that meet at one edge: each is a wall to the others.
-    if (organs_.empty() && open.empty())
-      return {{path_, "the mesh bounds no volume", "it is a sheet; export a closed surface"}};
+    if (organs_.empty() && open.empty()) return is_sheet;
     if (organs_.empty() || are_crumbs(open)) return open;
     if (!filled.empty())
       note({"hole", std::int64_t(filled.size()), widest(filled).centre,
