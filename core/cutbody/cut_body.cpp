@@ -99,11 +99,6 @@ void CutBody::show_whole() {
   outer_triangles_ = whole_.triangle.size(), outer_vertices_ = whole_.vertex.size();
 }
 
-void CutBody::add(const SideBinding::Bound& bound) {
-  surface_.vertex.push_back(bound.rest);
-  bound.binding.append_to(surface_.binding);
-}
-
 /// Makes surface_ anew: near the cut of the mesh of the grid, elsewhere of the organ's own vertices.
 class CutBody::Rebuilding {
  public:
@@ -111,6 +106,7 @@ class CutBody::Rebuilding {
       : body_(body),
         grid_(body.parts_->grid),
         state_(state),
+        writer_(body.parts_->binding, body.surface_.binding),
         near_(grid_.widened(grid_.cut_blocks())),
         meshed_(grid_.widened(near_)),
         mesh_(body.parts_->mesher.make(meshed_)),
@@ -156,8 +152,12 @@ class CutBody::Rebuilding {
   const SideBinding::Bound& bound_of(const CutMesh::Vertex& vertex, bool is_wall) {
     return body_.parts_->binding.bind(vertex, true, is_wall, state_);
   }
+  void add(const SideBinding::Bound& bound) {
+    body_.surface_.vertex.push_back(bound.rest);
+    writer_.add(bound.binding);
+  }
   Index add_outer(const SideBinding::Bound& bound) {
-    body_.add(bound), body_.origin_.push_back(bound.origin);
+    add(bound), body_.origin_.push_back(bound.origin);
     return count() - 1;
   }
   /// A vertex of the organ's own surface. Far from all cuts (side -1) it goes on as it is.
@@ -180,13 +180,14 @@ class CutBody::Rebuilding {
   Index wall(Index v) {
     Index& known = wall_[std::size_t(v)];
     if (known >= 0) return known;
-    body_.add(body_.parts_->binding.bind(mesh_.vertex[std::size_t(v)], is_outer_[std::size_t(v)] != 0, true, state_));
+    add(body_.parts_->binding.bind(mesh_.vertex[std::size_t(v)], is_outer_[std::size_t(v)] != 0, true, state_));
     return known = count() - 1;
   }
 
   CutBody& body_;
   const CutGrid& grid_;
   const State& state_;
+  SideBinding::Writer writer_;
   std::vector<std::uint8_t> near_, meshed_;  ///< blocks around the cut, and around those
   CutMesh mesh_;
   std::vector<Index> of_corner_, outer_, wall_;   ///< vertices of surface_ made so far, or -1
@@ -200,6 +201,7 @@ void CutBody::rebuild(const State& state) {
   SurfaceBinding& binding = surface_.binding;
   surface_.vertex.clear(), surface_.triangle.clear(), origin_.clear();
   binding.first.assign(1, 0), binding.sphere.clear(), binding.weight.clear(), binding.turned.clear();
+  binding.frame.clear();
   Rebuilding rebuilding(*this, state);
   rebuilding.add_outer();
   outer_triangles_ = surface_.triangle.size(), outer_vertices_ = surface_.vertex.size();

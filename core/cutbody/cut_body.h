@@ -53,7 +53,6 @@ class CutBody {
   class Rebuilding;
   void show_whole();
   void rebuild(const State& state);
-  void add(const SideBinding::Bound& bound);
   Index nearest_corner(Vec3 rest) const;
 
   const Model& model_;

@@ -295,6 +295,7 @@ static BlockSurface surface_of_block(const CutGrid& grid, CutGrid::Index block,
   BlockSurface result;
   Surface& part = result.part;
   part.binding.first.push_back(0);
+  SideBinding::Writer writer(binding, part.binding);
   std::vector<CutGrid::Index> number(count, -1);
   const auto add = [&](CutGrid::Index v, bool in_wall) {
     const auto i = std::size_t(v);
@@ -302,7 +303,7 @@ static BlockSurface surface_of_block(const CutGrid& grid, CutGrid::Index block,
     const SideBinding::Bound& bound =
         binding.bind(mesh.vertex[i], !in_wall || is_outer[i] != 0, in_wall || is_wall[i] != 0, seen);
     part.vertex.push_back(bound.rest), result.piece.push_back(piece[std::size_t(mesh.vertex[i].side)]);
-    bound.binding.append_to(part.binding);
+    writer.add(bound.binding);
     return number[i] = std::int32_t(part.vertex.size()) - 1;
   };
   const auto add_triangles = [&](std::size_t first, std::size_t last, bool in_wall) {
@@ -343,10 +344,10 @@ std::vector<std::unique_ptr<CutPatch>> CutPatches::make(Index block) {
         part.binding.sphere.push_back(from.sphere[e]), part.binding.weight.push_back(from.weight[e]);
       part.binding.first.push_back(std::int32_t(part.binding.sphere.size()));
     }
+    part.binding.frame = from.frame;
     for (const TurnedOffset& offset : from.turned)
       if (all.piece[std::size_t(offset.vertex)] == piece)
-        part.binding.turned.push_back(offset),
-            part.binding.turned.back().vertex = place[std::size_t(offset.vertex)].vertex;
+        part.binding.turned.push_back({place[std::size_t(offset.vertex)].vertex, offset.frame, offset.offset});
     for (const Triangle& t : all.part.triangle) {
       const auto number = [&](std::size_t c) { return place[std::size_t(t[c])].vertex; };
       if (all.piece[std::size_t(t[0])] == piece) part.triangle.push_back({number(0), number(1), number(2)});

@@ -19,7 +19,7 @@ namespace {
 struct Sums {
   double all, none;
 };
-constexpr Sums kNear{1.3, 2.5}, kFar{2, 3}, kOfPiece{2, 3};
+constexpr Sums kNear{1.3, 2.5}, kFar{2, 3};
 constexpr double kWider = 1.5;
 
 /// The same for spheres that hardly leave a plane: a single one far beside it would throw a place out and in. In
@@ -35,10 +35,9 @@ constexpr double kOnSurface = 2e-3;
 /// Places this near to the swept surface are put onto it; a place's node is so near to it. In steps of the grid.
 constexpr double kOntoCut = 1.5, kSideSteps = 1.7321;
 
-/// Spheres that may turn a place in every way.
-constexpr std::size_t kSpanPlane = 3;
-
-constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+/// A place follows the frames of its own spheres wholly where they count for so much in sum; one that is half of the
+/// reach away counts 0.56 (our choice).
+constexpr double kEnough = 0.3;
 
 /// From 0 to 1 where `t` does.
 double smooth(double t) {
@@ -91,36 +90,36 @@ class SideBinding::Mix {
     add(way, smooth((sums.none - sum) / (sums.none - sums.all)) * smooth((way.depth - kFlat) / (kDeep - kFlat)));
   }
 
-  /// Fills up what is missing.
-  void fill(const Binding& way) {
-    turned_ = way.turned, turned_.offset = missing_ * way.turned.offset;
-    add(way, 1);
+  /// Adds a part of a way.
+  void add(const Binding& way, double part) {
+    if (part == 0) return;
+    for (std::size_t i = 0; i < way.sphere.size(); ++i) weight_[way.sphere[i]] += missing_ * part * way.weight[i];
+    for (const Binding::Turned& turned : way.turned) offset_[turned.sphere] += missing_ * part * turned.offset;
+    missing_ *= 1 - part;
   }
 
   Binding binding() const {
     Binding all;
-    all.turned = turned_;
     for (const auto& [sphere, weight] : weight_) all.sphere.push_back(sphere), all.weight.push_back(weight);
+    for (const auto& [sphere, offset] : offset_) all.turned.push_back({sphere, offset});
     return all;
   }
 
  private:
-  void add(const Binding& way, double part) {
-    if (part == 0) return;
-    for (std::size_t i = 0; i < way.sphere.size(); ++i) weight_[way.sphere[i]] += missing_ * part * way.weight[i];
-    missing_ *= 1 - part;
-  }
-
   std::map<Index, double> weight_;
-  TurnedOffset turned_;
+  std::map<Index, Vec3> offset_;
   double missing_ = 1;
 };
 
-void SideBinding::Binding::append_to(SurfaceBinding& to) const {
-  to.sphere.insert(to.sphere.end(), sphere.begin(), sphere.end());
-  to.weight.insert(to.weight.end(), weight.begin(), weight.end());
-  if (!turned.sphere.empty()) to.turned.push_back(turned), to.turned.back().vertex = Index(to.first.size()) - 1;
-  to.first.push_back(Index(to.sphere.size()));
+void SideBinding::Writer::add(const Binding& binding) {
+  to_.sphere.insert(to_.sphere.end(), binding.sphere.begin(), binding.sphere.end());
+  to_.weight.insert(to_.weight.end(), binding.weight.begin(), binding.weight.end());
+  for (const Binding::Turned& turned : binding.turned) {
+    const auto [known, is_new] = frame_of_.try_emplace(turned.sphere, Index(to_.frame.size()));
+    if (is_new) to_.frame.push_back(binding_.frame_of(turned.sphere));
+    to_.turned.push_back({Index(to_.first.size()) - 1, known->second, turned.offset});
+  }
+  to_.first.push_back(Index(to_.sphere.size()));
 }
 
 SideBinding::SideBinding(const Model& model, const CutGrid& grid)
@@ -278,9 +277,10 @@ void SideBinding::bind(Index side, bool is_outer, Entry& entry) {
   Mix mix;
   mix.add(follow(bound.rest, joined, reach), kNear);
   if (!mix.is_whole()) mix.add(follow(bound.rest, joined, kWider * reach), kFar);
-  if (!mix.is_whole())
-    if (const Binding own = follow_stiffly(bound.rest, joined, kWider * reach); own.sphere.size() >= kSpanPlane)
-      mix.fill(own);
+  if (!mix.is_whole()) {
+    const Binding own = follow_frames(bound.rest, joined, reach);
+    mix.add(own, smooth(own.depth / kEnough));
+  }
   entry.by_piece = !mix.is_whole();
   if (entry.by_piece) {
     if (piece_.empty()) find_pieces();
@@ -326,50 +326,82 @@ void SideBinding::find_pieces() {
     if (const auto hosted = host.find(piece); hosted != host.end()) piece = hosted->second;
 }
 
-/// Fills a mix up with spheres of a piece, if there are any around.
+/// Fills a mix up with the frames of a piece's spheres, from near ones to far ones, if it has any.
 void SideBinding::follow_piece(Vec3 rest, Index piece, Mix& mix) const {
   const double reach = surface::kBindingReach * organ_.spacing;
-  for (const double wider : {1.0, 1.5, 2.5, 4.0})
-    if (!mix.is_whole()) mix.add(follow(rest, spheres_around(rest, wider * reach, piece), wider * reach), kOfPiece);
-  if (mix.is_whole()) return;
-  if (const Binding way = follow_rigidly(rest, piece); !way.sphere.empty()) mix.fill(way);
-}
-
-/// Follows spheres of a piece around a place as one stiff body. Empty if there are none.
-SideBinding::Binding SideBinding::follow_rigidly(Vec3 rest, Index piece) const {
-  std::vector<Joined> around;
-  double within = 0;
-  for (const double wider : {1.0, 2.0, piece >= 0 ? 4.0 : kAnywhere})
-    if (around.size() < kSpanPlane)
-      within = wider * surface::kBindingReach * organ_.spacing, around = spheres_around(rest, within, piece);
-  if (within == kAnywhere) {
-    within = 0;
-    for (const Joined& s : around)
-      within = std::max(within, 2 * norm(model_.rest_position[std::size_t(organ_.first + s.sphere)] - rest));
+  Binding widest;
+  for (const double wider : {1.0, 2.0, 4.0}) {
+    const Binding way = follow_frames(rest, spheres_around(rest, wider * reach, piece), wider * reach);
+    mix.add(way, smooth(way.depth / kEnough));
+    if (mix.is_whole()) return;
+    if (!way.sphere.empty()) widest = way;
   }
-  return follow_stiffly(rest, around, within);
+  if (widest.sphere.empty()) widest = follow_nearest(rest, piece);
+  if (!widest.sphere.empty()) mix.add(widest, 1);
 }
 
-/// Follows those of the spheres that are within reach as one stiff body: their mean, and beside it what turns with
-/// them. Spheres that lie in a plane or on a line, or that are fewer than four, tell no more. Empty if there are none.
-SideBinding::Binding SideBinding::follow_stiffly(Vec3 rest, std::span<const Joined> spheres, double reach) const {
-  const auto centre = [&](Index sphere) { return model_.rest_position[std::size_t(organ_.first + sphere)]; };
+/// Follows the one sphere of a piece that is nearest. Empty if there is none.
+SideBinding::Binding SideBinding::follow_nearest(Vec3 rest, Index piece) const {
+  Index nearest = -1;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Joined& s : spheres_around(rest, least, piece)) {
+    const double distance = norm(model_.rest_position[std::size_t(organ_.first + s.sphere)] - rest);
+    if (distance < least) nearest = s.sphere, least = distance;
+  }
+  if (nearest < 0) return {};
+  const Joined only{nearest, 1};
+  return follow_frames(rest, {&only, 1}, 2 * least);
+}
+
+/// Follows spheres that are within reach, and turns with the frame of each. It fits where they do not span space, too,
+/// and never throws a place out. How much they count in sum is its depth.
+SideBinding::Binding SideBinding::follow_frames(Vec3 rest, std::span<const Joined> spheres, double reach) const {
   Binding binding;
   double sum = 0;
   for (const Joined& s : spheres) {
-    const Vec3 off = centre(s.sphere) - rest;
+    const auto sphere = std::size_t(organ_.first + s.sphere);
+    const Vec3 off = rest - model_.rest_position[sphere];
     const double bump = 1 - dot(off, off) / (reach * reach);
-    const double weight = s.part * model_.mass[std::size_t(organ_.first + s.sphere)] * bump * bump;
+    const double weight = s.part * model_.mass[sphere] * bump * bump;
     if (!(bump > 0) || !(weight > 0)) continue;
+    binding.depth += s.part * bump * bump;
     binding.sphere.push_back(s.sphere), binding.weight.push_back(weight), sum += weight;
+    binding.turned.push_back({s.sphere, weight * off});
   }
-  if (!(sum > 0)) return {};
-  Vec3 mean;
-  for (std::size_t i = 0; i < binding.sphere.size(); ++i)
-    binding.weight[i] /= sum, mean += binding.weight[i] * centre(binding.sphere[i]);
-  binding.turned = {-1, rest - mean, binding.sphere, binding.weight, {}};
-  for (const Index sphere : binding.sphere) binding.turned.arm.push_back(centre(sphere) - mean);
+  for (double& weight : binding.weight) weight /= sum;
+  for (Binding::Turned& turned : binding.turned) turned.offset = turned.offset / sum;
   return binding;
+}
+
+/// How the tissue around a sphere turns: with the spheres that it is joined to.
+const TissueFrame& SideBinding::frame_of(Index sphere) {
+  const auto [found, is_new] = frames_.try_emplace(sphere);
+  Frame& known = found->second;
+  if (!is_new && joined_.is_as_in(known.round, known.nodes)) return known.frame;
+  known = {{}, {}, joined_.round()};
+  const auto centre = [&](Index s) { return model_.rest_position[std::size_t(organ_.first + s)]; };
+  const double reach = surface::kBindingReach * organ_.spacing;
+  const Vec3 at = centre(sphere);
+  TissueFrame& frame = known.frame;
+  double sum = 0;
+  const auto add = [&](Index s, double part) {
+    const Vec3 off = centre(s) - at;
+    const double bump = 1 - dot(off, off) / (reach * reach);
+    const double weight = part * model_.mass[std::size_t(organ_.first + s)] * bump * bump;
+    if (bump > 0 && weight > 0) frame.sphere.push_back(s), frame.weight.push_back(weight), sum += weight;
+  };
+  const Index home = grid_.home_of_sphere(sphere);
+  if (home < 0) {
+    add(sphere, 1);
+  } else {
+    for (const Joined& s : joined_.around(grid_.rest(home), home)) add(s.sphere, s.part);
+    known.nodes = joined_.nodes();
+  }
+  Vec3 mean;
+  for (std::size_t i = 0; i < frame.sphere.size(); ++i)
+    frame.weight[i] /= sum, mean += frame.weight[i] * centre(frame.sphere[i]);
+  for (const Index s : frame.sphere) frame.arm.push_back(centre(s) - mean);
+  return frame;
 }
 
 }  // namespace ctpm::cutbody

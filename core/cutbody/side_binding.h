@@ -27,11 +27,12 @@ class SideBinding {
     /// How far the spheres are from lying in a plane: a measure of their least variance along a line, in spacings
     /// squared.
     double depth = 0;
-    /// What turns with the spheres of a piece that do not span space; without spheres if there is none.
-    TurnedOffset turned;
-
-    /// Adds it as the binding of the next vertex.
-    void append_to(SurfaceBinding& to) const;
+    /// What turns with the frame of a sphere: how far spheres that do not span space are from where they put a place.
+    struct Turned {
+      Index sphere;
+      Vec3 offset;  ///< [m]
+    };
+    std::vector<Turned> turned;
   };
   /// The place on the organ's own surface that is nearest to a vertex: in the middle of a triangle's corners with these
   /// weights.
@@ -45,13 +46,27 @@ class SideBinding {
     Origin origin;
   };
 
+  /// A SurfaceBinding that grows by vertices bound by one SideBinding.
+  class Writer {
+   public:
+    /// All must outlive the Writer. `to`: of no vertex yet.
+    Writer(SideBinding& binding, SurfaceBinding& to) : binding_(binding), to_(to) {}
+    /// Adds the next vertex.
+    void add(const Binding& binding);
+
+   private:
+    SideBinding& binding_;
+    SurfaceBinding& to_;
+    std::unordered_map<Index, Index> frame_of_;  ///< of the spheres of which it has a frame
+  };
+
   /// Both must outlive the SideBinding.
   SideBinding(const Model& model, const CutGrid& grid);
 
   /// Follows the grid, of which edges or spheres in a box have changed.
   void update(CutGrid::NodeBox changed);
   /// Forgets all: it is found again when it is asked for.
-  void forget() { bound_ = {}, joined_.forget(); }
+  void forget() { bound_ = {}, frames_ = {}, joined_.forget(); }
 
   /// What a vertex follows, and where it is: on the organ's own surface or on the swept surface of `state`. It is
   /// remembered. A vertex whose side is -1 is far from all cuts.
@@ -86,9 +101,10 @@ class SideBinding {
   void bind(Index side, bool is_outer, Entry& entry);
   Binding follow_whole(const Origin& origin) const;
   Binding follow(Vec3 rest, std::span<const Joined> spheres, double reach) const;
-  Binding follow_rigidly(Vec3 rest, Index piece) const;
-  Binding follow_stiffly(Vec3 rest, std::span<const Joined> spheres, double reach) const;
+  Binding follow_nearest(Vec3 rest, Index piece) const;
+  Binding follow_frames(Vec3 rest, std::span<const Joined> spheres, double reach) const;
   void follow_piece(Vec3 rest, Index piece, Mix& mix) const;
+  const TissueFrame& frame_of(Index sphere);
   std::vector<Joined> spheres_around(Vec3 rest, double reach, Index piece) const;
 
   const Model& model_;
@@ -97,6 +113,12 @@ class SideBinding {
   const CutGrid& grid_;
   JoinedSpheres joined_;
   std::unordered_map<Key, Entry, KeyHash> bound_;
+  struct Frame {
+    TissueFrame frame;
+    std::vector<Index> nodes;  ///< on what these see it depends
+    std::uint32_t round = 0;   ///< of joined_, in which it was so
+  };
+  std::unordered_map<Index, Frame> frames_;  ///< around spheres
   std::size_t asked_ = 0;                  ///< entries asked for in this round of joined_
   std::vector<CutGrid::NodeBox> changed_;  ///< in each round
   cutting::SweptBoxes row_boxes_;          ///< see cutting::boxes_of_rows()

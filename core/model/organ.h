@@ -9,16 +9,20 @@
 
 namespace ctpm {
 
-/// A distance that turns with some spheres, which may lie in a plane, on a line, or be one. It is added to the weighted
-/// sum of a vertex's spheres, so that a thin piece keeps its thickness.
-struct TurnedOffset {
-  std::int32_t vertex = -1;
-  Vec3 offset;  ///< at rest [m]
-  /// Spheres, within the organ, that it turns with, how much each counts (> 0, sum to 1), and where each is at rest,
-  /// seen from their weighted mean [m].
+/// Spheres that tell how the tissue around them has turned. They may lie in a plane, on a line, or be one.
+struct TissueFrame {
+  /// The spheres, within the organ, how much each counts (> 0, sum to 1), and where each is at rest, seen from their
+  /// weighted mean [m].
   std::vector<std::int32_t> sphere;
   std::vector<double> weight;
   std::vector<Vec3> arm;
+};
+
+/// A distance that turns with a frame. It is added to the weighted sum of a vertex's spheres, so that a thin piece
+/// keeps its thickness.
+struct TurnedOffset {
+  std::int32_t vertex = -1, frame = -1;
+  Vec3 offset;  ///< at rest [m]
 };
 
 /// How the vertices of a render surface follow the spheres: each is a weighted sum of sphere positions. The weights
@@ -28,9 +32,10 @@ struct SurfaceBinding {
   std::vector<std::int32_t> first;   ///< where a vertex's entries begin; the last value is the total (vertex_count + 1)
   std::vector<std::int32_t> sphere;  ///< the sphere of an entry (entry_count)
   std::vector<double> weight;        ///< its weight; a vertex's weights sum to 1                     (entry_count)
-  /// What weights cannot give to vertices of pieces whose spheres do not span space, ascending by vertex. Only a cut
-  /// surface has any.
+  /// What weights cannot give to vertices whose spheres do not span space, ascending by vertex; a vertex may have
+  /// several. Only a cut surface has any.
   std::vector<TurnedOffset> turned;
+  std::vector<TissueFrame> frame;
 };
 
 /// The watertight triangle mesh that is drawn for one organ, oriented outwards.

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
-
-#include "core/surface/rigid_motion.h"
 
 namespace ctpm::surface {
 namespace {
@@ -36,7 +35,7 @@ NearSurface::NearSurface(const Model& model, std::size_t first_organ, std::size_
   const bool is_lent = last_organ == first_organ + 1 && model.organs[first_organ].first == 0;
   for (std::size_t i = first_organ; i < last_organ; ++i) {
     if (!is_lent) copy_followers(model.surfaces[i], model.organs[i]);
-    add_organ(model.surfaces[i], model.organs[i]);
+    add_organ(model.surfaces[i]);
     for (Index s = 0; s < model.organs[i].count; ++s) spheres_.push_back(model.organs[i].first + s);
   }
   if (is_lent) {
@@ -52,11 +51,10 @@ NearSurface::NearSurface(const Model& model, std::size_t organ, const Surface& p
     : sphere_rest_(model.rest_position) {
   first_.push_back(0);
   copy_followers(part, model.organs[organ]);
-  add_organ(part, model.organs[organ]);
+  add_organ(part), add_turned(part.binding, model.organs[organ]);
   rest_ = own_rest_, sphere_ = own_sphere_, weight_ = own_weight_;
   spheres_ = own_sphere_;
-  for (const TurnedOffset& offset : turned_)
-    spheres_.insert(spheres_.end(), offset.sphere.begin(), offset.sphere.end());
+  for (const TissueFrame& frame : frame_) spheres_.insert(spheres_.end(), frame.sphere.begin(), frame.sphere.end());
   std::sort(spheres_.begin(), spheres_.end());
   spheres_.erase(std::unique(spheres_.begin(), spheres_.end()), spheres_.end());
   find_bounds(kTrianglesPerPatchOfPart);
@@ -93,19 +91,13 @@ void NearSurface::copy_followers(const Surface& surface, const OrganRange& organ
   own_weight_.insert(own_weight_.end(), surface.binding.weight.begin(), surface.binding.weight.end());
 }
 
-void NearSurface::add_organ(const Surface& surface, const OrganRange& organ) {
+void NearSurface::add_organ(const Surface& surface) {
   const Index first_vertex = Index(vertex_count()), first_entry = first_.back();
   if (surface.vertex.empty()) return;
   first_.reserve(first_.size() + surface.vertex.size());
   triangles_.reserve(triangles_.size() + surface.triangle.size());
   for (std::size_t v = 1; v < surface.binding.first.size(); ++v)
     first_.push_back(first_entry + surface.binding.first[v]);
-  if (!surface.binding.turned.empty()) turned_of_.resize(vertex_count(), -1);
-  for (const TurnedOffset& offset : surface.binding.turned) {
-    turned_of_[std::size_t(first_vertex + offset.vertex)] = Index(turned_.size());
-    turned_.push_back(offset);
-    for (Index& sphere : turned_.back().sphere) sphere += organ.first;
-  }
   for (const auto& corner : surface.triangle) {
     Triangle triangle{{first_vertex + corner[0], first_vertex + corner[1], first_vertex + corner[2]}, 0, 0};
     const Vec3 a = surface.vertex[std::size_t(corner[0])], b = surface.vertex[std::size_t(corner[1])],
@@ -114,6 +106,17 @@ void NearSurface::add_organ(const Surface& surface, const OrganRange& organ) {
     triangle.longest_edge = std::max({norm(b - a), norm(c - b), norm(a - c)});
     triangles_.push_back(triangle);
   }
+}
+
+void NearSurface::add_turned(const SurfaceBinding& binding, const OrganRange& organ) {
+  if (binding.turned.empty()) return;
+  turned_ = binding.turned, frame_ = binding.frame;
+  for (TissueFrame& frame : frame_)
+    for (Index& sphere : frame.sphere) sphere += organ.first;
+  turn_.resize(frame_.size()), turn_in_.assign(frame_.size(), 0);
+  first_turned_.assign(vertex_count() + 1, 0);
+  for (const TurnedOffset& offset : turned_) ++first_turned_[std::size_t(offset.vertex) + 1];
+  std::partial_sum(first_turned_.begin(), first_turned_.end(), first_turned_.begin());
 }
 
 /// Sorts the triangles along a Morton curve, so that runs of them are compact.
@@ -158,8 +161,9 @@ NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_tr
         negative -= std::min(weight_[e], 0.0);
       }
       widen = std::max(widen, negative);
-      if (const Index t = turned_of(corner); t >= 0)
-        turned = std::max(turned, 2 * norm(turned_[std::size_t(t)].offset));
+      double farthest = 0;
+      for (const TurnedOffset& offset : turned_of(corner)) farthest += 2 * norm(offset.offset);
+      turned = std::max(turned, farthest);
     }
   std::sort(bound_spheres_.begin() + begin, bound_spheres_.end());
   return {first, last, begin, Index(bound_spheres_.size()), box, widen, turned};
@@ -175,8 +179,8 @@ void NearSurface::find_places_in_spheres() {
   own_in_spheres_.reserve(sphere_.size());
   for (const Index sphere : sphere_) own_in_spheres_.push_back(place_of(sphere));
   in_spheres_ = own_in_spheres_;
-  for (TurnedOffset& offset : turned_)
-    for (Index& sphere : offset.sphere) sphere = place_of(sphere);
+  for (TissueFrame& frame : frame_)
+    for (Index& sphere : frame.sphere) sphere = place_of(sphere);
 }
 
 void NearSurface::begin(const Vec3Array& position) {
@@ -214,14 +218,18 @@ Vec3 NearSurface::place(Index vertex) {
   Vec3 sum;
   for (auto e = std::size_t(first_[v]); e < std::size_t(first_[v + 1]); ++e)
     sum += weight_[e] * position_[std::size_t(in_spheres_[e])];
-  if (turned_of(vertex) >= 0) sum += offset(vertex);
-  return placed_[v] = sum;
+  return placed_[v] = sum + offset(vertex);
 }
 
 Vec3 NearSurface::offset(Index vertex) const {
-  const Index own = turned_of(vertex);
-  if (own < 0) return {};
-  return turned(turned_[std::size_t(own)], [&](Index sphere) { return position_[std::size_t(sphere)]; });
+  Vec3 sum;
+  for (const TurnedOffset& offset : turned_of(vertex)) {
+    const auto f = std::size_t(offset.frame);
+    if (std::exchange(turn_in_[f], round_) != round_)
+      turn_[f] = turn_of(frame_[f], [&](Index sphere) { return position_[std::size_t(sphere)]; });
+    sum += turn_[f](offset.offset);
+  }
+  return sum;
 }
 
 }  // namespace ctpm::surface

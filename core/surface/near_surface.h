@@ -7,6 +7,7 @@
 #include "core/model/box.h"
 #include "core/model/model.h"
 #include "core/model/vec3.h"
+#include "core/surface/rigid_motion.h"
 
 namespace ctpm::surface {
 
@@ -110,9 +111,14 @@ class NearSurface {
     if (place.round != round_) place = {round_, bound.rest.moved(displacements(bound))};
     return place.box;
   }
-  Index turned_of(Index vertex) const { return turned_of_.empty() ? -1 : turned_of_[std::size_t(vertex)]; }
+  std::span<const TurnedOffset> turned_of(Index vertex) const {
+    if (first_turned_.empty()) return {};
+    const auto begin = std::size_t(first_turned_[std::size_t(vertex)]);
+    return {turned_.data() + begin, std::size_t(first_turned_[std::size_t(vertex) + 1]) - begin};
+  }
+  void add_turned(const SurfaceBinding& binding, const OrganRange& organ);
   void find_moved() const;
-  void add_organ(const Surface& surface, const OrganRange& organ);
+  void add_organ(const Surface& surface);
   void copy_followers(const Surface& surface, const OrganRange& organ);
   void find_places_in_spheres();
   void find_bounds(Index triangles_per_patch);
@@ -126,8 +132,11 @@ class NearSurface {
   std::span<const double> weight_;     ///< as there
   std::span<const Index> in_spheres_;  ///< place of each of sphere_ in spheres_
   std::span<const Vec3> rest_;         ///< of all vertices [m]
-  std::vector<TurnedOffset> turned_;   ///< their spheres are places in spheres_
-  std::vector<Index> turned_of_;       ///< of each vertex, -1: none; empty if no vertex has any
+  std::vector<TurnedOffset> turned_;   ///< ascending by vertex
+  std::vector<Index> first_turned_;    ///< of each vertex, and their number; empty if no vertex has any
+  std::vector<TissueFrame> frame_;     ///< their spheres are places in spheres_
+  mutable std::vector<Turn> turn_;     ///< how each frame has turned, if it was asked for
+  mutable std::vector<std::uint32_t> turn_in_;  ///< round in which it was found
   std::vector<Index> own_sphere_, own_in_spheres_;  ///< what the spans show where it is not the Model's
   std::vector<double> own_weight_;
   std::vector<Vec3> own_rest_;

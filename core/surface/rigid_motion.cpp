@@ -24,7 +24,7 @@ double size_squared(const Matrix& m) {
 Matrix nearest_rotation(Matrix m) {
   constexpr int kMostIterations = 30;
   constexpr double kSingular = 1e-6, kConverged = 1e-28;
-  const Matrix none = RigidMotion{}.turn;
+  const Matrix none = Turn{}.entry;
   const double size = std::sqrt(size_squared(m));
   if (!(cofactors(m).second > kSingular * size * size * size)) return none;
   for (double& entry : m) entry *= 1.7320508075688772 / size;
@@ -38,13 +38,8 @@ Matrix nearest_rotation(Matrix m) {
   return m;
 }
 
-Vec3 times(const Matrix& m, Vec3 v) {
-  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
-          m[6] * v.x + m[7] * v.y + m[8] * v.z};
-}
-
-/// Turns a vector by the smallest rotation that takes the direction `from` to the direction `to`, both unit vectors.
-Vec3 turn_least(Vec3 from, Vec3 to, Vec3 v) {
+/// The vector after the smallest rotation that takes the direction `from` to the direction `to`, both unit vectors.
+Vec3 turned_least(Vec3 from, Vec3 to, Vec3 v) {
   constexpr double kOpposite = 1e-9;
   const Vec3 axis = cross(from, to);
   const double cosine = dot(from, to);
@@ -56,24 +51,30 @@ Vec3 turn_least(Vec3 from, Vec3 to, Vec3 v) {
 
 }  // namespace
 
-Vec3 RigidMotion::operator()(Vec3 rest) const { return to + times(turn, rest - from); }
+Vec3 Turn::operator()(Vec3 v) const {
+  const Matrix& m = entry;
+  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
+          m[6] * v.x + m[7] * v.y + m[8] * v.z};
+}
+
+Vec3 RigidMotion::operator()(Vec3 rest) const { return to + turn(rest - from); }
 
 void add_moment(Matrix& moment, Vec3 now, Vec3 rest) {
   const double of_now[3] = {now.x, now.y, now.z}, of_rest[3] = {rest.x, rest.y, rest.z};
   for (std::size_t k = 0; k < 9; ++k) moment[k] += of_now[k / 3] * of_rest[k % 3];
 }
 
-Vec3 turn_of(const Matrix& moment, Vec3 rest) {
+Turn turn_of(const Matrix& moment) {
   constexpr double kLine = 1e-3;  // cofactors of a matrix that counts as one of rank 1, to the square of its size
   const double squared = size_squared(moment);
-  if (!(squared > 0)) return rest;
+  if (!(squared > 0)) return {};
   const Matrix cofactor = cofactors(moment).first;
   const double plane = std::sqrt(size_squared(cofactor));
   if (plane > kLine * squared) {
     // In a plane the cofactors are the outer product of its normals now and at rest.
     Matrix full = moment;
     for (std::size_t k = 0; k < 9; ++k) full[k] += cofactor[k] / std::sqrt(plane);
-    return times(nearest_rotation(full), rest);
+    return {nearest_rotation(full)};
   }
   const Vec3 column[3] = {
       {moment[0], moment[3], moment[6]}, {moment[1], moment[4], moment[7]}, {moment[2], moment[5], moment[8]}};
@@ -81,7 +82,13 @@ Vec3 turn_of(const Matrix& moment, Vec3 rest) {
   for (const Vec3& c : column)
     if (dot(c, c) > dot(to, to)) to = c;
   const Vec3 from{dot(column[0], to), dot(column[1], to), dot(column[2], to)};
-  return turn_least(from / norm(from), to / norm(to), rest);
+  Turn turn;
+  const Vec3 axis[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Vec3 v = turned_least(from / norm(from), to / norm(to), axis[a]);
+    turn.entry[a] = v.x, turn.entry[3 + a] = v.y, turn.entry[6 + a] = v.z;
+  }
+  return turn;
 }
 
 RigidMotion rigid_motion(const Model& model, const OrganRange& organ, const Vec3Array& position) {
@@ -98,7 +105,7 @@ RigidMotion rigid_motion(const Model& model, const OrganRange& organ, const Vec3
     const Vec3 now = model.mass[i] * (position[i] - motion.to), rest = model.rest_position[i] - motion.from;
     add_moment(moment, now, rest);
   }
-  motion.turn = nearest_rotation(moment);
+  motion.turn.entry = nearest_rotation(moment);
   return motion;
 }
 

@@ -237,9 +237,11 @@ void deform_surface(const Surface& surface, const Vec3Array& position, std::int3
     for (std::int32_t entry = binding.first[v]; entry < binding.first[v + 1]; ++entry)
       vertex[v] +=
           binding.weight[std::size_t(entry)] * position[std::size_t(first_sphere + binding.sphere[std::size_t(entry)])];
+  std::vector<Turn> turn;
+  for (const TissueFrame& frame : binding.frame)
+    turn.push_back(turn_of(frame, [&](std::int32_t sphere) { return position[std::size_t(first_sphere + sphere)]; }));
   for (const TurnedOffset& offset : binding.turned)
-    vertex[std::size_t(offset.vertex)] +=
-        turned(offset, [&](std::int32_t sphere) { return position[std::size_t(first_sphere + sphere)]; });
+    vertex[std::size_t(offset.vertex)] += turn[std::size_t(offset.frame)](offset.offset);
 }
 
 }  // namespace ctpm::surface

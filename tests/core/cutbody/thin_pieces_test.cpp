@@ -153,44 +153,41 @@ TEST(ThinPieces, AFlapOfOneLayerFollowsItsOwnSpheresAndNotFarOnesBesideIt) {
   EXPECT_LT(most, 1e-3);
 }
 
-/// An offset that turns with spheres at `arms`, each as heavy as the others.
-TurnedOffset offset_with(const std::vector<Vec3>& arms) {
-  TurnedOffset offset;
-  offset.offset = {0.3, -0.2, 0.5};
+/// A frame of spheres at `arms`, each as heavy as the others.
+TissueFrame frame_of(const std::vector<Vec3>& arms) {
+  TissueFrame frame;
   for (std::size_t i = 0; i < arms.size(); ++i) {
-    offset.sphere.push_back(std::int32_t(i));
-    offset.weight.push_back(1 / double(arms.size()));
-    offset.arm.push_back(arms[i]);
+    frame.sphere.push_back(std::int32_t(i));
+    frame.weight.push_back(1 / double(arms.size()));
+    frame.arm.push_back(arms[i]);
   }
-  return offset;
+  return frame;
 }
 
-TEST(TurnedOffset, TurnsWithSpheresInSpaceInAPlaneAndOnALine) {
-  const Vec3 o = move({});
-  const auto moved = [](const TurnedOffset& offset) {
-    return surface::turned(offset, [&](std::int32_t s) { return move(offset.arm[std::size_t(s)]); });
+TEST(TissueFrame, TurnsWithSpheresInSpaceInAPlaneAndOnALine) {
+  const Vec3 o = move({}), offset{0.3, -0.2, 0.5};
+  const auto moved = [&](const TissueFrame& frame) {
+    return surface::turn_of(frame, [&](std::int32_t s) { return move(frame.arm[std::size_t(s)]); })(offset);
   };
-  const Vec3 whole = move({0.3, -0.2, 0.5}) - o;
+  const Vec3 whole = move(offset) - o;
   const std::vector<Vec3> space{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   const std::vector<Vec3> plane{{1, 0, 0}, {-1, 0, 0}, {0, 0.4, 0.4}, {0, -0.4, -0.4}};
   const std::vector<Vec3> line{{0, 1, 0}, {0, -1, 0}};
-  EXPECT_LT(norm(moved(offset_with(space)) - whole), 1e-12);
-  EXPECT_LT(norm(moved(offset_with(plane)) - whole), 1e-12);
+  EXPECT_LT(norm(moved(frame_of(space)) - whole), 1e-12);
+  EXPECT_LT(norm(moved(frame_of(plane)) - whole), 1e-12);
   // About the line itself nothing says how far it turned.
-  const TurnedOffset on_line = offset_with(line);
-  const Vec3 direction = move({0, 1, 0}) - o;
-  EXPECT_NEAR(norm(moved(on_line)), norm(on_line.offset), 1e-12);
-  EXPECT_NEAR(dot(moved(on_line), direction), on_line.offset.y, 1e-12);
-  const auto at = [](const std::vector<Vec3>& places) {
-    return [places](std::int32_t s) { return places[std::size_t(s)]; };
+  const Vec3 on_line = moved(frame_of(line)), direction = move({0, 1, 0}) - o;
+  EXPECT_NEAR(norm(on_line), norm(offset), 1e-12);
+  EXPECT_NEAR(dot(on_line, direction), offset.y, 1e-12);
+  const auto moved_to = [&](const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+    return surface::turn_of(frame_of(from), [&](std::int32_t s) { return to[std::size_t(s)]; })(offset);
   };
-  const Vec3 half_turn = surface::turned(on_line, at({{0, -1, 0}, {0, 1, 0}}));
-  EXPECT_NEAR(half_turn.y, -on_line.offset.y, 1e-12);
-  EXPECT_NEAR(norm(half_turn), norm(on_line.offset), 1e-12);
-  EXPECT_EQ(surface::turned(offset_with({{0, 0, 0}}), at({{7, 8, 9}})).z, on_line.offset.z);
+  const Vec3 half_turn = moved_to(line, {{0, -1, 0}, {0, 1, 0}});
+  EXPECT_NEAR(half_turn.y, -offset.y, 1e-12);
+  EXPECT_NEAR(norm(half_turn), norm(offset), 1e-12);
+  EXPECT_EQ(moved_to({{0, 0, 0}}, {{7, 8, 9}}).z, offset.z);
   // Turned inside out, a flat set is the same set seen from behind, and stays a rotation.
-  EXPECT_NEAR(norm(surface::turned(offset_with(plane), at({{-1, 0, 0}, {1, 0, 0}, {0, 0.4, 0.4}, {0, -0.4, -0.4}}))),
-              norm(on_line.offset), 1e-12);
+  EXPECT_NEAR(norm(moved_to(plane, {{-1, 0, 0}, {1, 0, 0}, {0, 0.4, 0.4}, {0, -0.4, -0.4}})), norm(offset), 1e-12);
 }
 
 }  // namespace
