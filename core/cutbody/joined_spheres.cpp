@@ -66,6 +66,8 @@ void JoinedSpheres::find_nodes(Vec3 rest, Index side) {
         if (is_joined(down, down)) find(down);
       }
     }
+  // A place on the line between the organ's surface and a cut may be far from its node.
+  if (nodes_.empty()) nodes_.push_back({side, 1});
 }
 
 std::span<const JoinedSpheres::Joined> JoinedSpheres::around(Vec3 rest, Index side) {

@@ -44,6 +44,12 @@ class JoinedSpheres {
 
   /// Number of calls of update().
   std::uint32_t round() const { return sight_.round(); }
+  struct Weighted {
+    Index node;
+    double weight;
+  };
+  /// The nodes of the place's own side that said so in the last call of around(), and how much each counted.
+  std::span<const Weighted> weighted_nodes() const { return nodes_; }
   /// The nodes on which, and on the edges of which, the result of the last call of around() depends.
   std::vector<Index> nodes() const;
   /// Whether nodes have the edges, and see what they saw, in a round.
@@ -53,10 +59,6 @@ class JoinedSpheres {
   struct Known {
     Sight::Seen seen;
     std::uint32_t round = 0;  ///< in which it was seen
-  };
-  struct Weighted {
-    Index node;
-    double weight;
   };
   void find_nodes(Vec3 rest, Index side);
   const Sight::Seen& seen_from(Index node);

@@ -127,7 +127,8 @@ SideBinding::SideBinding(const Model& model, const CutGrid& grid)
       organ_(model.organs[std::size_t(grid.organ())]),
       whole_(model.surfaces[std::size_t(grid.organ())]),
       grid_(grid),
-      joined_(grid) {}
+      joined_(grid),
+      nearest_(grid) {}
 
 /// Vertices of one side differ in their places.
 std::size_t SideBinding::KeyHash::operator()(const Key& key) const {
@@ -141,7 +142,7 @@ void SideBinding::update(CutGrid::NodeBox changed) {
     std::erase_if(bound_, [&](const auto& known) { return known.second.round < joined_.round(); });
   asked_ = 0;
   changed_.push_back(changed);
-  piece_.clear(), row_boxes_.clear();
+  piece_.clear(), row_boxes_.clear(), nearest_.forget();
   joined_.update(changed);
 }
 
@@ -283,6 +284,10 @@ void SideBinding::bind(Index side, bool is_outer, Entry& entry) {
   }
   entry.by_piece = !mix.is_whole();
   if (entry.by_piece) {
+    const Binding near = follow_nearest(bound.rest);
+    mix.add(near, near.depth);
+  }
+  if (!mix.is_whole()) {
     if (piece_.empty()) find_pieces();
     for (const Index piece : {piece_[std::size_t(side)], Index(-1)})
       if (!mix.is_whole()) follow_piece(bound.rest, piece, mix);
@@ -336,12 +341,12 @@ void SideBinding::follow_piece(Vec3 rest, Index piece, Mix& mix) const {
     if (mix.is_whole()) return;
     if (!way.sphere.empty()) widest = way;
   }
-  if (widest.sphere.empty()) widest = follow_nearest(rest, piece);
+  if (widest.sphere.empty()) widest = follow_any(rest, piece);
   if (!widest.sphere.empty()) mix.add(widest, 1);
 }
 
 /// Follows the one sphere of a piece that is nearest. Empty if there is none.
-SideBinding::Binding SideBinding::follow_nearest(Vec3 rest, Index piece) const {
+SideBinding::Binding SideBinding::follow_any(Vec3 rest, Index piece) const {
   Index nearest = -1;
   double least = std::numeric_limits<double>::infinity();
   for (const Joined& s : spheres_around(rest, least, piece)) {
@@ -351,6 +356,30 @@ SideBinding::Binding SideBinding::follow_nearest(Vec3 rest, Index piece) const {
   if (nearest < 0) return {};
   const Joined only{nearest, 1};
   return follow_frames(rest, {&only, 1}, 2 * least);
+}
+
+/// Follows those spheres that are the fewest edges away from the nodes of the place that joined_ was asked for last. Its
+/// depth is the part of the nodes to which one is near.
+SideBinding::Binding SideBinding::follow_nearest(Vec3 rest) {
+  constexpr double kFades = 4;  // edges
+  std::map<Index, double> weight;
+  double all = 0, found = 0;
+  for (const JoinedSpheres::Weighted& n : joined_.weighted_nodes()) {
+    const NearestSpheres::Near near = nearest_.of(n.node);
+    all += n.weight;
+    if (near.sphere < 0) continue;
+    const double part = n.weight * smooth((NearestSpheres::kMostHops - near.hops) / kFades);
+    if (part > 0) weight[near.sphere] += part, found += part;
+  }
+  Binding binding;
+  if (!(found > 0)) return binding;
+  binding.depth = found / all;
+  for (const auto& [sphere, part] : weight) {
+    const Vec3 off = rest - model_.rest_position[std::size_t(organ_.first + sphere)];
+    binding.sphere.push_back(sphere), binding.weight.push_back(part / found);
+    binding.turned.push_back({sphere, part / found * off});
+  }
+  return binding;
 }
 
 /// Follows spheres that are within reach, and turns with the frame of each. It fits where they do not span space, too,

@@ -9,6 +9,7 @@
 #include "core/cutbody/cut_grid.h"
 #include "core/cutbody/cut_mesh.h"
 #include "core/cutbody/joined_spheres.h"
+#include "core/cutbody/nearest_spheres.h"
 #include "core/model/model.h"
 #include "core/model/organ.h"
 #include "core/model/state.h"
@@ -101,7 +102,8 @@ class SideBinding {
   void bind(Index side, bool is_outer, Entry& entry);
   Binding follow_whole(const Origin& origin) const;
   Binding follow(Vec3 rest, std::span<const Joined> spheres, double reach) const;
-  Binding follow_nearest(Vec3 rest, Index piece) const;
+  Binding follow_nearest(Vec3 rest);
+  Binding follow_any(Vec3 rest, Index piece) const;
   Binding follow_frames(Vec3 rest, std::span<const Joined> spheres, double reach) const;
   void follow_piece(Vec3 rest, Index piece, Mix& mix) const;
   const TissueFrame& frame_of(Index sphere);
@@ -112,6 +114,7 @@ class SideBinding {
   const Surface& whole_;
   const CutGrid& grid_;
   JoinedSpheres joined_;
+  NearestSpheres nearest_;
   std::unordered_map<Key, Entry, KeyHash> bound_;
   struct Frame {
     TissueFrame frame;
