@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <optional>
+#include <set>
 #include <unordered_map>
 
 #include "core/cutbody/cut_grid.h"
 #include "core/cutbody/cut_mesh.h"
+#include "core/cutbody/mesh_lists.h"
 #include "core/cutbody/place_hash.h"
 #include "core/cutting/swept_surface.h"
 
@@ -94,8 +97,17 @@ bool CutBody::update(const State& state) {
 
 std::int32_t CutBody::piece_count() const { return is_cut_ ? count_pieces(parts_->grid) : 1; }
 
+std::vector<CutBody::Index> CutBody::piece_of_vertex() const {
+  std::vector<Index> piece(surface_.vertex.size(), -1);
+  if (!is_cut_) return piece;
+  const std::vector<Index> of_node = parts_->grid.find_pieces();
+  for (std::size_t v = 0; v < piece.size(); ++v)
+    if (side_[v] >= 0) piece[v] = of_node[std::size_t(side_[v])];
+  return piece;
+}
+
 void CutBody::show_whole() {
-  surface_ = whole_, origin_.clear(), is_cut_ = false;
+  surface_ = whole_, origin_.clear(), side_.clear(), is_cut_ = false;
   outer_triangles_ = whole_.triangle.size(), outer_vertices_ = whole_.vertex.size();
 }
 
@@ -117,6 +129,7 @@ class CutBody::Rebuilding {
         is_wall_(mesh_.vertex.size(), 0) {
     for (std::size_t t = 0; t < mesh_.triangle.size(); ++t)
       for (const Index v : mesh_.triangle[t]) (t < mesh_.outer_triangles ? is_outer_ : is_wall_)[std::size_t(v)] = 1;
+    find_bubbles();
   }
 
   void add_outer() {
@@ -139,12 +152,42 @@ class CutBody::Rebuilding {
   void add_walls() {
     for (std::size_t t = mesh_.outer_triangles; t < mesh_.triangle.size(); ++t) {
       const Triangle& v = mesh_.triangle[t];
+      if (is_bubble_[std::size_t(v[0])] != 0) continue;
       const Index a = wall(v[0]), b = wall(v[1]), c = wall(v[2]);
       body_.surface_.triangle.push_back({a, b, c});
     }
   }
 
  private:
+  /// Finds slits that are smaller than a spacing and reach no surface: the grid leaves them beyond the rim of a cut,
+  /// where it crosses single edges only. Crumbs of tissue have such surfaces, too, but are pieces.
+  void find_bubbles() {
+    is_bubble_.assign(mesh_.vertex.size(), 0);
+    JoinedVertices joined;
+    for (std::size_t v = 0; v < mesh_.vertex.size(); ++v) joined.add();
+    for (const Triangle& t : mesh_.triangle) joined.join(t[0], t[1]), joined.join(t[1], t[2]);
+    std::map<Index, Box> inner;  // by their first vertices: what consists of walls
+    std::vector<std::uint8_t> has_outer(mesh_.vertex.size(), 0);
+    for (std::size_t v = 0; v < mesh_.vertex.size(); ++v)
+      if (is_outer_[v] != 0) has_outer[std::size_t(joined.root(Index(v)))] = 1;
+    for (std::size_t v = 0; v < mesh_.vertex.size(); ++v)
+      if (const Index root = joined.root(Index(v)); has_outer[std::size_t(root)] == 0 && is_wall_[v] != 0)
+        inner.try_emplace(root, mesh_.vertex[v].rest).first->second.add(mesh_.vertex[v].rest);
+    std::erase_if(inner, [&](const auto& part) {
+      const Vec3 size = part.second.high - part.second.low;
+      return std::max({size.x, size.y, size.z}) > CutGrid::kPerSpacing * grid_.step();
+    });
+    if (inner.empty()) return;
+    const std::vector<Index> piece = grid_.find_pieces();
+    const auto piece_of = [&](Index v) { return piece[std::size_t(mesh_.vertex[std::size_t(v)].side)]; };
+    std::set<Index> shown;  // pieces that have another surface
+    for (std::size_t v = 0; v < mesh_.vertex.size(); ++v)
+      if (!inner.contains(joined.root(Index(v)))) shown.insert(piece_of(Index(v)));
+    std::erase_if(inner, [&](const auto& part) { return !shown.contains(piece_of(part.first)); });
+    for (std::size_t v = 0; v < mesh_.vertex.size(); ++v)
+      is_bubble_[v] = std::uint8_t(inner.contains(joined.root(Index(v))));
+  }
+
   Index count() const { return Index(body_.surface_.vertex.size()); }
   void push(Index a, Index b, Index c) {
     if (a != b && b != c && c != a) body_.surface_.triangle.push_back({a, b, c});
@@ -152,12 +195,12 @@ class CutBody::Rebuilding {
   const SideBinding::Bound& bound_of(const CutMesh::Vertex& vertex, bool is_wall) {
     return body_.parts_->binding.bind(vertex, true, is_wall, state_);
   }
-  void add(const SideBinding::Bound& bound) {
-    body_.surface_.vertex.push_back(bound.rest);
+  void add(const SideBinding::Bound& bound, Index side) {
+    body_.surface_.vertex.push_back(bound.rest), body_.side_.push_back(side);
     writer_.add(bound.binding);
   }
-  Index add_outer(const SideBinding::Bound& bound) {
-    add(bound), body_.origin_.push_back(bound.origin);
+  Index add_outer(const SideBinding::Bound& bound, Index side) {
+    add(bound, side), body_.origin_.push_back(bound.origin);
     return count() - 1;
   }
   /// A vertex of the organ's own surface. Far from all cuts (side -1) it goes on as it is.
@@ -165,22 +208,23 @@ class CutBody::Rebuilding {
     Index& known = of_corner_[std::size_t(own)];
     if (known >= 0) return known;
     const CutMesh::Vertex vertex{body_.whole_.vertex[std::size_t(own)], side};
-    if (side >= 0) return known = add_outer(bound_of(vertex, false));
+    if (side >= 0) return known = add_outer(bound_of(vertex, false), side);
     std::optional<SideBinding::Bound>& far = body_.parts_->far_bound[std::size_t(own)];
     if (!far) far = bound_of(vertex, false);
-    return known = add_outer(*far);
+    return known = add_outer(*far, -1);
   }
   Index outer(Index v) {
     const CutMesh::Vertex& vertex = mesh_.vertex[std::size_t(v)];
     Index& known = outer_[std::size_t(v)];
     if (known >= 0) return known;
     const Index own = near_[std::size_t(grid_.block(vertex.side))] ? -1 : body_.nearest_corner(vertex.rest);
-    return known = own >= 0 ? corner(own, vertex.side) : add_outer(bound_of(vertex, is_wall_[std::size_t(v)] != 0));
+    return known = own >= 0 ? corner(own, vertex.side) : add_outer(bound_of(vertex, is_wall_[std::size_t(v)] != 0), vertex.side);
   }
   Index wall(Index v) {
     Index& known = wall_[std::size_t(v)];
     if (known >= 0) return known;
-    add(body_.parts_->binding.bind(mesh_.vertex[std::size_t(v)], is_outer_[std::size_t(v)] != 0, true, state_));
+    const CutMesh::Vertex& vertex = mesh_.vertex[std::size_t(v)];
+    add(body_.parts_->binding.bind(vertex, is_outer_[std::size_t(v)] != 0, true, state_), vertex.side);
     return known = count() - 1;
   }
 
@@ -191,7 +235,7 @@ class CutBody::Rebuilding {
   std::vector<std::uint8_t> near_, meshed_;  ///< blocks around the cut, and around those
   CutMesh mesh_;
   std::vector<Index> of_corner_, outer_, wall_;   ///< vertices of surface_ made so far, or -1
-  std::vector<std::uint8_t> is_outer_, is_wall_;  ///< vertices of the mesh
+  std::vector<std::uint8_t> is_outer_, is_wall_, is_bubble_;  ///< vertices of the mesh
 };
 
 void CutBody::rebuild(const State& state) {
@@ -199,7 +243,7 @@ void CutBody::rebuild(const State& state) {
   is_cut_ = true;
   // Emptied, so that their memory is used again.
   SurfaceBinding& binding = surface_.binding;
-  surface_.vertex.clear(), surface_.triangle.clear(), origin_.clear();
+  surface_.vertex.clear(), surface_.triangle.clear(), origin_.clear(), side_.clear();
   binding.first.assign(1, 0), binding.sphere.clear(), binding.weight.clear(), binding.turned.clear();
   binding.frame.clear();
   Rebuilding rebuilding(*this, state);

@@ -47,6 +47,9 @@ class CutBody {
 
   /// Pieces of tissue that the cuts leave.
   std::int32_t piece_count() const;
+  /// A number of the piece that each vertex of surface() belongs to; -1: one that is far from all cuts, which is a
+  /// vertex of one piece only (vertex_count). Vertices of different pieces may coincide.
+  std::vector<Index> piece_of_vertex() const;
 
  private:
   struct Parts;
@@ -63,6 +66,7 @@ class CutBody {
   std::size_t outer_triangles_ = 0, outer_vertices_ = 0;
   bool is_cut_ = false;
   std::vector<Origin> origin_;
+  std::vector<Index> side_;  ///< a node of the grid in the tissue that each vertex belongs to; -1: far from all cuts
 };
 
 }  // namespace ctpm::cutbody

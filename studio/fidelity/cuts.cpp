@@ -141,7 +141,7 @@ Result<CutsResult> measure_cuts(const std::string& shipped, bool is_quick) {
         cutbody::CutBody body(*model, 0);
         (void)body.update(state);
         row.pieces = body.piece_count(), row.triangles = body.surface().triangle.size();
-        const Topology topology = topology_of(body.surface());
+        const Topology topology = topology_of(body);
         row.components = topology.components, row.open_edges = topology.open_edges;
         row.off = farthest_wall(body, state) / place.spacing;
       });

@@ -70,7 +70,7 @@ Result<Body> block(const Cut& cut, double radius) {
 /// Compares the drawn surface with the pieces.
 void look(cutbody::CutBody& drawn, const State& state, PiecesResult::Row& row) {
   (void)drawn.update(state);
-  const Topology topology = topology_of(drawn.surface());
+  const Topology topology = topology_of(drawn);
   ++row.looks;
   row.wrong += topology.components != drawn.piece_count() || topology.open_edges > 0;
 }

@@ -179,7 +179,9 @@ struct StrokesResult {
     int wrong = 0;  ///< looks at which the drawn surface was open, or had other components than there were pieces
     int changed_uncut = 0;  ///< looks at which it was another one, but nothing had been swept since the last look
     double stretch = 0;     ///< of a triangle's longest edge, over that at rest: the largest of all looks
-    int stretched = 0;      ///< triangles of all looks that were stretched more than six times
+    /// Triangles of all looks that were stretched more than six times: without elements under them that are stretched
+    /// half as much, and with such.
+    int stretched = 0, pulled = 0;
     double torn = 0;        ///< how far places that lie together at rest came apart [spacings]
   };
   std::vector<Row> rows;

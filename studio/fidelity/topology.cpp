@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "core/surface/surface.h"
@@ -9,11 +11,17 @@
 
 namespace ctpm::fidelity {
 
-Topology topology_of(const Surface& surface) {
-  const std::vector<std::int32_t> number = surface::welded(surface);
+Topology topology_of(const cutbody::CutBody& drawn) {
+  const Surface& surface = drawn.surface();
+  const std::vector<std::int32_t> place = surface::welded(surface), piece = drawn.piece_of_vertex();
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> number;
+  const auto number_of = [&](std::int32_t v) {
+    const auto i = std::size_t(v);
+    return number.try_emplace({place[i], piece[i]}, v).first->second;
+  };
   std::vector<importers::Triangle> triangle;
   for (const auto& t : surface.triangle) {
-    const std::int32_t a = number[std::size_t(t[0])], b = number[std::size_t(t[1])], c = number[std::size_t(t[2])];
+    const std::int32_t a = number_of(t[0]), b = number_of(t[1]), c = number_of(t[2]);
     if (a != b && b != c && c != a) triangle.push_back({a, b, c});
   }
   const importers::MeshCounts counts = importers::count_mesh(surface.vertex, triangle);

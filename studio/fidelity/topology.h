@@ -1,14 +1,14 @@
 #pragma once
 
-#include "core/model/organ.h"
+#include "core/cutbody/cut_body.h"
 
 namespace ctpm::fidelity {
 
-/// How the triangles of a surface hang together; vertices that always move together count as one.
+/// How the triangles of a drawn surface hang together; vertices of one piece that always move together count as one.
 struct Topology {
   int components = 0;
   int open_edges = 0;  ///< of one triangle
 };
-Topology topology_of(const Surface& surface);
+Topology topology_of(const cutbody::CutBody& drawn);
 
 }  // namespace ctpm::fidelity
