@@ -159,8 +159,8 @@ class CutBody::Rebuilding {
   }
 
  private:
-  /// Finds slits that are smaller than a spacing and reach no surface: the grid leaves them beyond the rim of a cut,
-  /// where it crosses single edges only. Crumbs of tissue have such surfaces, too, but are pieces.
+  /// Finds slits that are narrower than a spacing and reach no surface: the grid leaves them along the rim of a cut,
+  /// where that crosses single edges only. Crumbs of tissue have such surfaces, too, but are pieces.
   void find_bubbles() {
     is_bubble_.assign(mesh_.vertex.size(), 0);
     JoinedVertices joined;
@@ -175,7 +175,8 @@ class CutBody::Rebuilding {
         inner.try_emplace(root, mesh_.vertex[v].rest).first->second.add(mesh_.vertex[v].rest);
     std::erase_if(inner, [&](const auto& part) {
       const Vec3 size = part.second.high - part.second.low;
-      return std::max({size.x, size.y, size.z}) > CutGrid::kPerSpacing * grid_.step();
+      const double width = size.x + size.y + size.z - std::max({size.x, size.y, size.z}) - std::min({size.x, size.y, size.z});
+      return width > CutGrid::kPerSpacing * grid_.step();
     });
     if (inner.empty()) return;
     const std::vector<Index> piece = grid_.find_pieces();
