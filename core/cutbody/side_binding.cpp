@@ -19,7 +19,7 @@ namespace {
 struct Sums {
   double all, none;
 };
-constexpr Sums kNear{1.3, 2.5}, kFar{2, 3};
+constexpr Sums kNear{1.3, 2.5}, kFar{2, 4};
 constexpr double kWider = 1.5;
 
 /// The same for spheres that hardly leave a plane: a single one far beside it would throw a place out and in. In

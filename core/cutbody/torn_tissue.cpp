@@ -1,6 +1,8 @@
 #include "core/cutbody/torn_tissue.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/cutbody/cut_grid.h"
 
@@ -39,9 +41,21 @@ void TornTissue::reset() {
   by_last_.swap(severed_), take_back();
 }
 
-/// For each node in tissue the piece of the spheres that are the fewest edges away in whole tissue; -1: none are. A
-/// sphere outside the tissue is at the place where its elements are.
-std::vector<Index> TornTissue::nearest_pieces(const CutGrid& grid, const State& state) const {
+/// Marks the blocks of a grid around the spheres that lost an element: elsewhere nothing can tear.
+std::vector<std::uint8_t> TornTissue::blocks_at_cut(const CutGrid& grid) const {
+  std::vector<std::uint8_t> blocks(std::size_t(grid.block_count()), 0);
+  for (const auto* crossings : {&severed_, &by_last_})
+    for (const cutting::Crossing& crossing : *crossings)
+      for (const Index sphere : {model_.axial.a[std::size_t(crossing.element)], model_.axial.b[std::size_t(crossing.element)]})
+        if (const Index home = grid.home_of_sphere(sphere - model_.organs[organ_].first); home >= 0)
+          blocks[std::size_t(grid.block(home))] = 1;
+  return grid.widened(blocks);
+}
+
+/// For each node in tissue the sphere that is the fewest edges away in whole tissue; -1: none is, or none is asked for.
+/// A sphere outside the tissue is at the place where its elements are.
+std::vector<Index> TornTissue::nearest_spheres(const CutGrid& grid, const State& state,
+                                               const std::vector<std::uint8_t>& blocks) const {
   const cutting::SweptBoxes boxes = cutting::boxes_of_rows(state);
   const auto node_at = [&](Vec3 place) {
     Index nearest = -1;
@@ -55,19 +69,23 @@ std::vector<Index> TornTissue::nearest_pieces(const CutGrid& grid, const State& 
     return nearest;
   };
   const OrganRange& organ = model_.organs[organ_];
+  const std::vector<std::uint8_t> around = grid.widened(blocks);
+  const auto is_around = [&](Index node) { return around[std::size_t(grid.block(node))] != 0; };
   std::vector<Index> of_node(std::size_t(grid.count()), -1), front, next;
   for (Index s = 0; s < organ.count; ++s) {
-    const auto i = std::size_t(organ.first + s);
-    const Index node = grid.is_inside(s) ? grid.home_of_sphere(s) : node_at(elements_.place(i));
+    const Index home = grid.home_of_sphere(s);
+    if (home < 0 || !is_around(home)) continue;
+    const Index node = grid.is_inside(s) ? home : node_at(elements_.place(std::size_t(organ.first + s)));
     if (node < 0 || of_node[std::size_t(node)] >= 0) continue;
-    of_node[std::size_t(node)] = pieces_.piece()[i], front.push_back(node);
+    of_node[std::size_t(node)] = s, front.push_back(node);
   }
   for (; !front.empty(); front.swap(next), next.clear())
     for (const Index from : front) {
       const CutGrid::Node n = grid.node(from);
       const auto go = [&](CutGrid::Node to, Index lower, int direction) {
         const Index i = grid.at(to);
-        if (!grid.in_tissue(i) || of_node[std::size_t(i)] >= 0 || !is_whole(grid, lower, direction)) return;
+        if (!grid.in_tissue(i) || of_node[std::size_t(i)] >= 0 || !is_around(i) || !is_whole(grid, lower, direction))
+          return;
         of_node[std::size_t(i)] = of_node[std::size_t(from)], next.push_back(i);
       };
       for (int d = 1; d < CutGrid::kDirections; ++d) {
@@ -80,30 +98,57 @@ std::vector<Index> TornTissue::nearest_pieces(const CutGrid& grid, const State& 
   return of_node;
 }
 
+/// Whether a way over at most so many elements, or whole ones only, leads from one sphere to another of the organ.
+bool TornTissue::is_joined(Index from, Index to, int most, bool by_whole) {
+  const Index first = model_.organs[organ_].first;
+  reached_in_.resize(std::size_t(model_.organs[organ_].count), 0), ++search_;
+  std::vector<Index> front{from}, next;
+  reached_in_[std::size_t(from)] = search_;
+  for (int hops = 0; hops < most; ++hops, front.swap(next), next.clear())
+    for (const Index sphere : front)
+      for (const Index element : elements_.of(std::size_t(first + sphere))) {
+        const auto e = std::size_t(element);
+        if (by_whole && network_.axial_severed[e] != 0) continue;
+        const Index other = model_.axial.a[e] + model_.axial.b[e] - (first + sphere) - first;
+        if (other == to) return true;
+        if (std::exchange(reached_in_[std::size_t(other)], search_) != search_) next.push_back(other);
+      }
+  return false;
+}
+
+/// Whether elements held two spheres together that now are far from each other, or apart, in the network. What it never
+/// held together is held by the tissue alone. Around the end of a cut there is a short way.
+bool TornTissue::came_apart(Index p, Index q) {
+  constexpr int kNear = 2, kFar = 6;  // elements
+  if (p < 0 || q < 0 || p == q) return false;
+  const auto [known, is_new] = apart_.try_emplace({std::min(p, q), std::max(p, q)}, false);
+  if (!is_new) return known->second;
+  const auto first = std::size_t(model_.organs[organ_].first), i = first + std::size_t(p), j = first + std::size_t(q);
+  const bool is_loose = whole_[i] == whole_[j] && pieces_.piece()[i] != pieces_.piece()[j];
+  return known->second = is_loose || (!is_joined(p, q, kFar, true) && is_joined(p, q, kNear, false));
+}
+
 TornTissue::Tear TornTissue::find(const CutGrid& grid, const State& state) {
   if (severed_.empty() && by_last_.empty()) return {};
-  pieces_.find(network_);
-  if (pieces_.piece() == whole_) return {};
-  const std::vector<Index> nearest = nearest_pieces(grid, state);
-  // What the network never held together is held by the tissue alone.
-  const auto came_apart = [&](Index p, Index q) {
-    return p >= 0 && q >= 0 && p != q && whole_[std::size_t(p)] == whole_[std::size_t(q)];
-  };
+  pieces_.find(network_), apart_.clear();
+  const std::vector<std::uint8_t> blocks = blocks_at_cut(grid);
+  const std::vector<Index> nearest = nearest_spheres(grid, state, blocks);
   Tear tear;
   for (Index i = 0; i < grid.count(); ++i) {
+    if (nearest[std::size_t(i)] < 0) continue;
     const CutGrid::Node n = grid.node(i);
-    for (int d = 1; d < CutGrid::kDirections && nearest[std::size_t(i)] >= 0; ++d) {
+    for (int d = 1; d < CutGrid::kDirections; ++d) {
       if (!grid.contains({n[0] + (d & 1), n[1] + (d >> 1 & 1), n[2] + (d >> 2)})) continue;
       const Index end = grid.end(i, d);
-      if (came_apart(nearest[std::size_t(i)], nearest[std::size_t(end)]) && is_whole(grid, i, d))
+      if (nearest[std::size_t(i)] != nearest[std::size_t(end)] && is_whole(grid, i, d) &&
+          came_apart(nearest[std::size_t(i)], nearest[std::size_t(end)]))
         tear.edge.push_back({i, d});
     }
   }
   const OrganRange& organ = model_.organs[organ_];
   for (Index s = 0; s < organ.count; ++s)
     if (const Index home = grid.home_of_sphere(s); home >= 0 && !grid.is_inside(s))
-      if (came_apart(pieces_.piece()[std::size_t(organ.first + s)], nearest[std::size_t(home)]))
-        tear.stray.push_back(s);
+      if (came_apart(s, nearest[std::size_t(home)])) tear.stray.push_back(s);
   return tear;
 }
 

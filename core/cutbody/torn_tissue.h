@@ -2,6 +2,8 @@
 
 #include <compare>
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "core/cutting/cutting.h"
@@ -15,8 +17,9 @@ namespace ctpm::cutbody {
 
 class CutGrid;
 
-/// Where tissue comes apart because nothing holds it: cuts may sever every element between two groups of spheres and
-/// yet leave a bridge of tissue in which no element runs. It tears in the middle between the groups. The severed
+/// Where tissue comes apart because nothing holds it: cuts may sever every element between neighbouring spheres and yet
+/// leave a bridge of tissue in which no element runs. It tears in the middle between them, unless they are still joined
+/// by a short way around it. The severed
 /// elements are those that the rows of the swept surface cross, so that the tear is a function of them alone.
 class TornTissue {
  public:
@@ -44,7 +47,12 @@ class TornTissue {
   Tear find(const CutGrid& grid, const State& state);
 
  private:
-  std::vector<std::int32_t> nearest_pieces(const CutGrid& grid, const State& state) const;
+  std::vector<std::uint8_t> blocks_at_cut(const CutGrid& grid) const;
+  std::vector<std::int32_t> nearest_spheres(const CutGrid& grid, const State& state,
+                                            const std::vector<std::uint8_t>& blocks) const;
+  bool is_joined(std::int32_t from, std::int32_t to, int most, bool by_whole);
+  bool came_apart(std::int32_t p, std::int32_t q);
+
   const Model& model_;
   std::size_t organ_;
   cutting::RestElements elements_;
@@ -52,6 +60,9 @@ class TornTissue {
   cutting::Pieces pieces_;
   std::vector<std::int32_t> whole_;  ///< the first sphere of the piece of each sphere before any cut (sphere_count)
   std::vector<cutting::Crossing> severed_, by_last_;
+  std::map<std::pair<std::int32_t, std::int32_t>, bool> apart_;  ///< pairs of spheres that were asked for
+  std::vector<std::uint32_t> reached_in_;                        ///< the last search that reached each sphere
+  std::uint32_t search_ = 0;
 };
 
 }  // namespace ctpm::cutbody
