@@ -119,7 +119,7 @@ bool TornTissue::is_joined(Index from, Index to, int most, bool by_whole) {
 /// Whether elements held two spheres together that now are far from each other, or apart, in the network. What it never
 /// held together is held by the tissue alone. Around the end of a cut there is a short way.
 bool TornTissue::came_apart(Index p, Index q) {
-  constexpr int kNear = 2, kFar = 6;  // elements
+  constexpr int kNear = 2, kFar = 4;  // elements
   if (p < 0 || q < 0 || p == q) return false;
   const auto [known, is_new] = apart_.try_emplace({std::min(p, q), std::max(p, q)}, false);
   if (!is_new) return known->second;
