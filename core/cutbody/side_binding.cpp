@@ -39,6 +39,10 @@ constexpr double kOntoCut = 1.5, kSideSteps = 1.7321;
 /// reach away counts 0.56 (our choice).
 constexpr double kEnough = 0.3;
 
+/// How far the spheres are that tell how the tissue around one turns: no farther than elements reach, so that a sharp
+/// bend turns few of them. In spacings.
+constexpr double kOfFrame = 1.6;
+
 /// From 0 to 1 where `t` does.
 double smooth(double t) {
   const double q = std::clamp(t, 0.0, 1.0);
@@ -409,7 +413,7 @@ const TissueFrame& SideBinding::frame_of(Index sphere) {
   if (!is_new && joined_.is_as_in(known.round, known.nodes)) return known.frame;
   known = {{}, {}, joined_.round()};
   const auto centre = [&](Index s) { return model_.rest_position[std::size_t(organ_.first + s)]; };
-  const double reach = surface::kBindingReach * organ_.spacing;
+  const double reach = kOfFrame * organ_.spacing;
   const Vec3 at = centre(sphere);
   TissueFrame& frame = known.frame;
   double sum = 0;
