@@ -191,6 +191,17 @@ inline constexpr GoldenRow kGoldenRevision12[] = {
     {"light, sdirk2", {0xd26734d372d4df92, 0x24a6390d14dc60ab, 0x5f5d7a5e7901fd9d, 0x252c4f6dd5862a1b}},
 };
 
+inline constexpr GoldenRow kGoldenRevision13[] = {
+    {"soft and touched cut, auto", {0xd5f884a9e30aa820, 0xa8ca57b2b3f9310e, 0xc5b9a9db06edb50d, 0x5abbea5c5948c251}},
+    {"touched slice, auto", {0xc651e673aaed1229, 0xf5a083e760a53fea, 0x9275339255a1e1b3, 0xabf4040c330acb3e}},
+    {"touched slice, sdirk2", {0xfc009c869aa9e49a, 0xb6cc0faa904be811, 0xa34b70fa58bf96e4, 0xcecb554ee8ba8656}},
+    {"soft and touched slice, auto", {0x0aebf3b27fba0d04, 0x48f5ebb3b9b1b20b, 0x83d59a6edd6063b3, 0xddc48375d97b5719}},
+    {"touched tear, auto", {0xc651e673aaed1229, 0x2daa381a3a772e97, 0xbe7502bc1bb26592, 0xcbd881d9dd5892ea}},
+    {"touched tear, sdirk2", {0xfc009c869aa9e49a, 0x8a72951a4f43bfe3, 0x1365cc7c70347b99, 0xbcf23ddc1a2b54ac}},
+    {"touched plane, auto", {0x05c70d5366a0e86f, 0x21d13da372bbb391, 0xcc929088b5f6d53a, 0xbea4b519a0b023f0}},
+    {"touched plane, sdirk2", {0x37af568419ef2339, 0x882b573d001dd94a, 0xfdae0beae8e33f6e, 0x03b1369b1a02ea3a}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},   {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189},   {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
@@ -198,6 +209,7 @@ inline constexpr GoldenRevision kGoldenRevisions[] = {
     {7, kGoldenRevision7, 0xe9b636c6028e3176},   {8, kGoldenRevision8, 0x7b7d2031be004e94},
     {9, kGoldenRevision9, 0xb75cb37d4faeb3c5},   {10, kGoldenRevision10, 0x6d5ddd69b485de71},
     {11, kGoldenRevision11, 0x4162fa4fa1d24cae}, {12, kGoldenRevision12, 0x1a990242ddda6fc4},
+    {13, kGoldenRevision13, 0xa5637b24229bb1f2},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

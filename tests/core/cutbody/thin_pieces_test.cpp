@@ -153,6 +153,36 @@ TEST(ThinPieces, AFlapOfOneLayerFollowsItsOwnSpheresAndNotFarOnesBesideIt) {
   EXPECT_LT(most, 1e-3);
 }
 
+TEST(ThinPieces, ASharpFoldOfOneLayerStretchesNoTriangle) {
+  // A slice of one layer is folded by half a turn along a line between spheres, so that its halves lie in each other:
+  // no rotation fits the spheres beside the line.
+  const Model model = testing::block_to_cut(8, 8, 6, 0.01);
+  State state = rest_state(model);
+  for (const double x : {0.0023, 0.0093})
+    testing::cut_along(
+        model,
+        [=](double t) {
+          return testing::straight_front({x, along(t), kBelow}, {x, along(t), 0.1});
+        },
+        state);
+  constexpr double kFold = 0.03, kX = 0.006;
+  for (std::size_t i = 0; i < model.sphere_count(); ++i)
+    if (const Vec3 p = model.rest_position[i]; p.x > 0.0023 && p.x < 0.0093 && p.z > kFold)
+      state.position.set(i, {p.x, p.y, 2 * kFold - p.z});
+  const testing::DrawnCut drawn(model, state);
+  double most = 0;
+  int count = 0;
+  for (const auto& t : drawn.surface.triangle)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto a = std::size_t(t[c]), b = std::size_t(t[(c + 1) % 3]);
+      if (std::abs(drawn.surface.vertex[a].x - kX) > 0.003) continue;
+      const double edge = norm(drawn.surface.vertex[b] - drawn.surface.vertex[a]);
+      most = std::max(most, norm(drawn.vertex[b] - drawn.vertex[a]) / std::max(edge, 0.6e-3)), ++count;
+    }
+  EXPECT_GT(count, 300);
+  EXPECT_LT(most, 2);
+}
+
 /// A frame of spheres at `arms`, each as heavy as the others.
 TissueFrame frame_of(const std::vector<Vec3>& arms) {
   TissueFrame frame;

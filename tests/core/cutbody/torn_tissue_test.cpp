@@ -17,10 +17,10 @@ namespace {
 /// An upright cut across x = 1.3 mm, between the spheres at -6 and 6 mm. Elements cross it at y = 1.3 and 6 mm, and
 /// nowhere between.
 constexpr double kX = 0.0013;
-std::function<cutting::Front(double)> stroke(double from, double to) {
+std::function<cutting::Front(double)> stroke(double from, double to, double low = -0.01, double high = 0.05) {
   return [=](double t) {
     const double y = from + t * (to - from);
-    return testing::straight_front({kX, y, -0.01}, {kX, y, 0.05});
+    return testing::straight_front({kX, y, low}, {kX, y, high});
   };
 }
 constexpr double kLeft = -0.06, kRight = 0.06;  // beyond the block
@@ -50,6 +50,30 @@ TEST(TornTissue, ABridgeWithoutElementsTears) {
   }
   EXPECT_GT(with_left, 100);
   EXPECT_GT(with_right, 100);
+}
+
+TEST(TornTissue, ABridgeWithoutElementsTearsWhereTheTissueIsJoinedFarFromIt) {
+  // Only the lowest layer of spheres is not cut.
+  const Model model = testing::block_to_cut(8, 8, 8, 0.01);
+  State state = rest_state(model);
+  constexpr double kLow = 0.006, kHigh = 0.1, kTop = 0.06;
+  testing::cut_along(model, stroke(kLeft, kHole, kLow, kHigh), state);
+  testing::cut_along(model, stroke(kRight, kHoleEnd, kLow, kHigh), state);
+  const Vec3 left{-0.02, 0, 0.01}, right{0.05, 0.01, 0};
+  for (std::size_t i = 0; i < model.sphere_count(); ++i)
+    if (model.rest_position[i].z > kLow) state.position.add(i, model.rest_position[i].x < 0 ? left : right);
+  const testing::DrawnCut drawn(model, state);
+  EXPECT_EQ(drawn.pieces, 1);
+  int with_left = 0, with_right = 0;
+  for (std::size_t v = 0; v < drawn.vertex.size(); ++v) {
+    if (drawn.surface.vertex[v].z < kTop) continue;
+    const Vec3 by = drawn.vertex[v] - drawn.surface.vertex[v];
+    const bool is_left = norm(by - left) < 1e-9, is_right = norm(by - right) < 1e-9;
+    EXPECT_TRUE(is_left || is_right) << drawn.surface.vertex[v].x << " " << drawn.surface.vertex[v].y;
+    with_left += is_left, with_right += is_right;
+  }
+  EXPECT_GT(with_left, 30);
+  EXPECT_GT(with_right, 30);
 }
 
 TEST(TornTissue, SpheresThatACutGoesThroughStayOnOneSideOfIt) {
