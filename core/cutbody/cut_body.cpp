@@ -175,7 +175,8 @@ class CutBody::Rebuilding {
         inner.try_emplace(root, mesh_.vertex[v].rest).first->second.add(mesh_.vertex[v].rest);
     std::erase_if(inner, [&](const auto& part) {
       const Vec3 size = part.second.high - part.second.low;
-      const double width = size.x + size.y + size.z - std::max({size.x, size.y, size.z}) - std::min({size.x, size.y, size.z});
+      const double width =
+          size.x + size.y + size.z - std::max({size.x, size.y, size.z}) - std::min({size.x, size.y, size.z});
       return width > CutGrid::kPerSpacing * grid_.step();
     });
     if (inner.empty()) return;
@@ -219,7 +220,8 @@ class CutBody::Rebuilding {
     Index& known = outer_[std::size_t(v)];
     if (known >= 0) return known;
     const Index own = near_[std::size_t(grid_.block(vertex.side))] ? -1 : body_.nearest_corner(vertex.rest);
-    return known = own >= 0 ? corner(own, vertex.side) : add_outer(bound_of(vertex, is_wall_[std::size_t(v)] != 0), vertex.side);
+    return known = own >= 0 ? corner(own, vertex.side)
+                            : add_outer(bound_of(vertex, is_wall_[std::size_t(v)] != 0), vertex.side);
   }
   Index wall(Index v) {
     Index& known = wall_[std::size_t(v)];
@@ -235,7 +237,7 @@ class CutBody::Rebuilding {
   SideBinding::Writer writer_;
   std::vector<std::uint8_t> near_, meshed_;  ///< blocks around the cut, and around those
   CutMesh mesh_;
-  std::vector<Index> of_corner_, outer_, wall_;   ///< vertices of surface_ made so far, or -1
+  std::vector<Index> of_corner_, outer_, wall_;               ///< vertices of surface_ made so far, or -1
   std::vector<std::uint8_t> is_outer_, is_wall_, is_bubble_;  ///< vertices of the mesh
 };
 

@@ -362,8 +362,8 @@ SideBinding::Binding SideBinding::follow_any(Vec3 rest, Index piece) const {
   return follow_frames(rest, {&only, 1}, 2 * least);
 }
 
-/// Follows those spheres that are the fewest edges away from the nodes of the place that joined_ was asked for last. Its
-/// depth is the part of the nodes to which one is near.
+/// Follows those spheres that are the fewest edges away from the nodes of the place that joined_ was asked for last.
+/// Its depth is the part of the nodes to which one is near.
 SideBinding::Binding SideBinding::follow_nearest(Vec3 rest) {
   constexpr double kFades = 4;  // edges
   std::map<Index, double> weight;

@@ -122,9 +122,9 @@ class SideBinding {
     std::uint32_t round = 0;   ///< of joined_, in which it was so
   };
   std::unordered_map<Index, Frame> frames_;  ///< around spheres
-  std::size_t asked_ = 0;                  ///< entries asked for in this round of joined_
-  std::vector<CutGrid::NodeBox> changed_;  ///< in each round
-  cutting::SweptBoxes row_boxes_;          ///< see cutting::boxes_of_rows()
+  std::size_t asked_ = 0;                    ///< entries asked for in this round of joined_
+  std::vector<CutGrid::NodeBox> changed_;    ///< in each round
+  cutting::SweptBoxes row_boxes_;            ///< see cutting::boxes_of_rows()
   std::vector<Index> piece_;  ///< that each node of the grid follows; empty until it is asked for after a change
 };
 

@@ -46,7 +46,8 @@ std::vector<std::uint8_t> TornTissue::blocks_at_cut(const CutGrid& grid) const {
   std::vector<std::uint8_t> blocks(std::size_t(grid.block_count()), 0);
   for (const auto* crossings : {&severed_, &by_last_})
     for (const cutting::Crossing& crossing : *crossings)
-      for (const Index sphere : {model_.axial.a[std::size_t(crossing.element)], model_.axial.b[std::size_t(crossing.element)]})
+      for (const Index sphere :
+           {model_.axial.a[std::size_t(crossing.element)], model_.axial.b[std::size_t(crossing.element)]})
         if (const Index home = grid.home_of_sphere(sphere - model_.organs[organ_].first); home >= 0)
           blocks[std::size_t(grid.block(home))] = 1;
   return grid.widened(blocks);

@@ -136,7 +136,7 @@ class NearSurface {
   std::vector<Index> first_turned_;    ///< of each vertex, and their number; empty if no vertex has any
   std::vector<TissueFrame> frame_;     ///< their spheres are places in spheres_
   mutable std::vector<Turn> turn_;     ///< how each frame has turned, if it was asked for
-  mutable std::vector<std::uint32_t> turn_in_;  ///< round in which it was found
+  mutable std::vector<std::uint32_t> turn_in_;      ///< round in which it was found
   std::vector<Index> own_sphere_, own_in_spheres_;  ///< what the spans show where it is not the Model's
   std::vector<double> own_weight_;
   std::vector<Vec3> own_rest_;

@@ -17,7 +17,7 @@ struct Turn {
 /// How an organ has moved from rest as a whole: turned about its centre of mass, and moved with it.
 struct RigidMotion {
   Turn turn;
-  Vec3 from, to;                                          ///< centre of mass at rest and now [m]
+  Vec3 from, to;  ///< centre of mass at rest and now [m]
 
   /// Where a point of the organ at rest would be [m].
   Vec3 operator()(Vec3 rest) const;

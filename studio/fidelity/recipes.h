@@ -182,7 +182,7 @@ struct StrokesResult {
     /// Triangles of all looks that were stretched more than six times: without elements under them that are stretched
     /// half as much, and with such.
     int stretched = 0, pulled = 0;
-    double torn = 0;        ///< how far places that lie together at rest came apart [spacings]
+    double torn = 0;  ///< how far places that lie together at rest came apart [spacings]
   };
   std::vector<Row> rows;
 };

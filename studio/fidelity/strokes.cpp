@@ -301,7 +301,8 @@ Chapter chapter_of(const StrokesResult& result) {
                    {"torn_spacings", "places came apart [spacings]", 3}};
   for (const StrokesResult::Row& row : result.rows) {
     table.rows.push_back({row.organ, 1e3 * row.radius, row.stroke, double(row.severed), double(row.looks),
-                          double(row.wrong), double(row.changed_uncut), row.stretch, double(row.stretched), double(row.pulled), row.torn});
+                          double(row.wrong), double(row.changed_uncut), row.stretch, double(row.stretched),
+                          double(row.pulled), row.torn});
     const auto add = [&](const std::string& name, double measured, Goal goal) {
       chapter.figures.push_back({.recipe = "strokes",
                                  .name = name + ", " + row.organ + ", " + row.stroke,
