@@ -124,13 +124,13 @@ void draw_panel(cv::Mat& rgb, const PixelBox& box, const Ink& tint, int opacity,
 /// How much of a panel is shown: less the nearer the tools are, so that they are never hidden.
 double share_shown(const PixelBox& box, const std::vector<Pixel>& tools, double reach) {
   constexpr double kLeast = 0.12;
-  double nearest = reach;
+  double nearest = reach * reach;
   for (const Pixel& p : tools) {
     const double x = std::max({box.x - p.x, p.x - box.x - box.width, 0.0}),
                  y = std::max({box.y - p.y, p.y - box.y - box.height, 0.0});
-    nearest = std::min(nearest, std::hypot(x, y));
+    nearest = std::min(nearest, x * x + y * y);
   }
-  return kLeast + (1 - kLeast) * nearest / reach;
+  return kLeast + (1 - kLeast) * std::sqrt(nearest) / reach;
 }
 
 /// The pixels below a panel, to let them shine through it afterwards.
