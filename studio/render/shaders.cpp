@@ -236,8 +236,9 @@ void main() {
   float facing = slow.turn.x + to_eye;
   vec3 c = slow.body * (1.0 + kStained * fine.a + slow.turn.z * to_key);
 #ifdef OOZES
-  // Blood oozes out of a cut, further where the relief lets it; a closed cut stays visible.
-  c *= mix(vec3(1.0), vec3(0.72, 0.20, 0.18), 0.8 * smoothstep(0.42, 0.78, lip + 0.15 * fine.a));
+  // Blood oozes out of a cut, here a little further than there, and runs out softly; a closed cut stays visible.
+  float reached = lip + 1.1 * gyroid(place_mirror.xyz * 61.0).w;
+  c *= mix(vec3(1.0), vec3(0.72, 0.20, 0.18), 0.8 * smoothstep(0.36, 0.84, reached));
   c *= mix(vec3(1.0), lip_tint, 0.9 * smoothstep(0.62, 0.92, lip));
 #endif
   // The mirrored way turns by twice as much; the film is half as rough as the tissue below.
