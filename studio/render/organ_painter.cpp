@@ -179,11 +179,13 @@ void OrganPainter::draw(const Gl& gl, const SceneView& scene, const DrawOptions&
     // Triangles that face the eye come first, because they hide most of the rest. Surface and walls are watertight:
     // nobody sees an inner face.
     set_look(outside, scene.looks[i], options);
+    if (glassy) outside.set("blood", scene.looks[i].blood);
     draw_indices(0, order.outside);
     if (glassy) continue;
     if (order.near_cut > 0) {
       const Program& near_cut = program(OrganPass::near_cut, options);
       set_look(near_cut, scene.looks[i], options);
+      near_cut.set("blood", scene.looks[i].blood);
       draw_indices(order.outside, order.near_cut);
     }
     if (order.wall > 0) {

@@ -206,6 +206,7 @@ in vec3 shadow_stain_rind;
 uniform float blood;  // 0: none, as in a section; 1: a fresh wall
 #elif defined OOZES
 uniform vec3 lip_tint;
+uniform float blood;  // 0: none oozes
 #endif
 uniform vec3 cutaway_point, cutaway_normal;
 out vec4 colour;
@@ -238,7 +239,7 @@ void main() {
 #ifdef OOZES
   // Blood oozes out of a cut, here a little further than there, and runs out softly; a closed cut stays visible.
   float reached = lip + 1.1 * gyroid(place_mirror.xyz * 61.0).w;
-  c *= mix(vec3(1.0), vec3(0.72, 0.20, 0.18), 0.8 * smoothstep(0.36, 0.84, reached));
+  c *= mix(vec3(1.0), vec3(0.72, 0.20, 0.18), 0.8 * blood * smoothstep(0.36, 0.84, reached));
   c *= mix(vec3(1.0), lip_tint, 0.9 * smoothstep(0.62, 0.92, lip));
 #endif
   // The mirrored way turns by twice as much; the film is half as rough as the tissue below.
