@@ -12,10 +12,10 @@ constexpr int kSteps = 12;         // to each side
 constexpr int kStepsBack = 4;      // where moving does not suffice
 constexpr double kFarther = 0.09;  // for each of them, of the distance
 constexpr double kLeastGainBack = 0.02;
-constexpr double kStep = 0.02;          // of the picture's width
-constexpr double kLeastGain = 0.002;    // for each further step, in shares of what is shown
-constexpr double kMargin = 0.02;        // of the picture's width, between organs and its border
-constexpr std::size_t kPoints = 1500;   // of the organs that are looked at
+constexpr double kStep = 0.02;           // of the picture's width
+constexpr double kLeastGain = 0.002;     // for each further step, in shares of what is shown
+constexpr double kMargin = 0.02;         // of the picture's width, between organs and its border
+constexpr std::size_t kPoints = 1500;    // of the organs that are looked at
 constexpr double kWeightOfTools = 0.25;  // panels fade before tools
 
 /// The camera with which everything stands further right and up by these shares of the picture's width.

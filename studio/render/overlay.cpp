@@ -344,12 +344,9 @@ void Overlay::Parts::plan_plot(const OverlayData& data, Plan& plan) {
 void Overlay::Parts::plan_legend(const OverlayData& data, Plan& plan) {
   if (data.legend.title.empty()) return;
   const int pad = px(16), w = px(250), h = px(98);
-  if (data.has_insets) {
-    plan.legend = {is_narrow ? px(20) : width - px(20) - w, px(20) + (is_narrow ? 2 : 1) * px(53), w, h};
-  } else {
-    const int bottom = is_narrow ? plan.facts.y - px(10) : height - px(20) - px(43) - px(10);
-    plan.legend = {width - px(20) - w - data.taken_right, bottom - h, w, h};
-  }
+  const int bottom = is_narrow ? plan.facts.y - px(10) : height - px(20) - px(43) - px(10), right = width - px(20) - w;
+  plan.legend = {right - data.taken_right, bottom - h, w, h};
+  if (data.has_insets) plan.legend = {is_narrow ? px(20) : right, px(20) + (is_narrow ? 2 : 1) * px(53), w, h};
   const int x = plan.legend.x + pad, inner = w - 2 * pad, y = plan.legend.y + px(12);
   plan.lines.push_back(line(small, small.shortened(data.legend.title, inner), x, y, kGrey));
   plan.bar = {x, y + px(30), inner, px(16)};
