@@ -378,8 +378,8 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
   if (data.level == OverlayLevel::none) return;
   int bottom = height - margin;
   if (is_narrow)
-    for (const PixelBox& box : {plan.facts, plan.plot, plan.legend})
-      if (box.height > 0 && box.y > height / 2) bottom = std::min(bottom, box.y - px(10));
+    for (const PixelBox& box : {plan.facts, plan.plot, data.has_insets ? PixelBox{} : plan.legend})
+      if (box.height > 0) bottom = std::min(bottom, box.y - px(10));
   const bool is_alone = data.level == OverlayLevel::caption;
   if (const std::string text = damage_text(data); !text.empty() && !is_alone)
     plan.warning = banner(text, bottom - h, !is_narrow, kWhite);
@@ -387,9 +387,9 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
   // Between the plot and the legend and above the warning; in the middle of the picture where it fits there.
   const bool is_free = is_narrow || is_alone;
   const int left = is_free ? px(5) : plan.plot.height > 0 ? plan.plot.x + plan.plot.width + px(10) : margin;
-  const int right = is_free                      ? width - px(5)
-                    : plan.legend.y > height / 2 ? plan.legend.x - px(10)
-                                                 : width - margin - data.taken_right;
+  const int right = is_free                                      ? width - px(5)
+                    : plan.legend.height > 0 && !data.has_insets ? plan.legend.x - px(10)
+                                                                 : width - margin - data.taken_right;
   // A still has nothing else to make room for; beside small pictures there is less room.
   const std::size_t most = is_alone || data.taken_right > 0 ? 2 : 1;
   const std::vector<std::string> texts = large.in_lines(data.caption, right - left - 2 * pad, most);
