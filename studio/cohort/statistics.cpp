@@ -16,7 +16,10 @@ std::optional<Spread> spread_of(std::span<const double> values) {
   }
   double squares = 0;
   for (const double value : values) squares += (value - spread.mean) * (value - spread.mean);
-  spread.deviation = std::sqrt(squares / double(values.size() - 1));
+  // What differs by rounding alone has no spread, in which anything else would be far away.
+  constexpr double kRounding = 1e-12;
+  if (spread.high - spread.low > kRounding * std::max(std::abs(spread.low), std::abs(spread.high)))
+    spread.deviation = std::sqrt(squares / double(values.size() - 1));
   return spread;
 }
 

@@ -1,6 +1,7 @@
 #include "studio/cohort/stroke_part.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "studio/output/number_text.h"
 
@@ -34,6 +35,9 @@ std::string text_of(const TaskResult& task, const StrokeMoment& moment) {
   const StrokeExcess& excess = moment.excess;
   const Told what = told(task, moment.is_of_force);
   const auto value = [&](double of) { return short_number(what.scale * of, 3) + " " + what.unit; };
+  // A mean below what counts at all is told as that, not with the digits of its rounding.
+  const std::string mean =
+      std::abs(what.scale * excess.mean) < 1e-6 ? std::string("0 ") + what.unit : value(excess.mean);
   const std::string worst = std::to_string(excess.worst);
   const std::string where = excess.from == excess.to ? "At " + worst + " % of the way "
                                                      : "Between " + std::to_string(excess.from) + " and " +
@@ -41,8 +45,8 @@ std::string text_of(const TaskResult& task, const StrokeMoment& moment) {
   const std::string spread = !has_spread(task, moment.is_of_force) ? "two experts have no spread of it"
                              : excess.deviation < what.rounding    ? "their spread is below " + value(what.rounding)
                                                                    : "their spread " + value(excess.deviation);
-  return where + what.what + ": " + value(excess.value) + " at " + worst + " %, the experts' mean there is " +
-         value(excess.mean) + ", " + spread + ".";
+  return where + what.what + ": " + value(excess.value) + " at " + worst + " %, the experts' mean there is " + mean +
+         ", " + spread + ".";
 }
 
 reports::Series along(const std::string& name, const std::vector<double>& values, double scale, reports::Stroke stroke,

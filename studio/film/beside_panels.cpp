@@ -8,12 +8,15 @@
 namespace ctpm::film {
 namespace {
 
-constexpr int kSteps = 12;              // to each side
-constexpr double kStep = 0.02;          // of the picture's width
-constexpr double kLeastGain = 0.002;    // for each further step, in shares of what is shown
-constexpr double kMargin = 0.02;        // of the picture's width, between organs and its border
-constexpr std::size_t kPoints = 4000;   // of the organs that are looked at
-constexpr double kWeightOfTools = 0.5;  // panels fade before tools
+constexpr int kSteps = 12;         // to each side
+constexpr int kStepsBack = 4;      // where moving does not suffice
+constexpr double kFarther = 0.09;  // for each of them, of the distance
+constexpr double kLeastGainBack = 0.02;
+constexpr double kStep = 0.02;           // of the picture's width
+constexpr double kLeastGain = 0.002;     // for each further step, in shares of what is shown
+constexpr double kMargin = 0.02;         // of the picture's width, between organs and its border
+constexpr std::size_t kPoints = 1500;    // of the organs that are looked at
+constexpr double kWeightOfTools = 0.25;  // panels fade before tools
 
 /// The camera with which everything stands further right and up by these shares of the picture's width.
 render::Camera moved(render::Camera camera, double right, double up, double aspect) {
@@ -52,13 +55,18 @@ render::Camera beside_panels(const render::Camera& camera, const render::Picture
   };
   render::Camera best = camera;
   double least = cost(camera);
-  // Along a diagonal the way is as long as both of its sides.
-  for (const auto& [right, up] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}})
-    for (int step = 1; step <= kSteps; ++step) {
-      const render::Camera there = moved(camera, right * step * kStep, up * step * kStep, aspect);
-      const double way = kLeastGain * step * (std::abs(right) + std::abs(up));
-      if (const double total = cost(there) + way; total < least) best = there, least = total;
-    }
+  for (int back = 0; back <= kStepsBack; ++back) {
+    render::Camera from = camera;
+    from.eye = camera.target + (1 + kFarther * back) * (camera.eye - camera.target);
+    // Along a diagonal the way is as long as both of its sides.
+    for (const auto& [right, up] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}})
+      for (int step = back > 0 ? 0 : 1; step <= kSteps; ++step) {
+        const render::Camera there = moved(from, right * step * kStep, up * step * kStep, aspect);
+        const double way = kLeastGainBack * back + kLeastGain * step * (std::abs(right) + std::abs(up));
+        if (way < least)
+          if (const double total = cost(there) + way; total < least) best = there, least = total;
+      }
+  }
   return best;
 }
 

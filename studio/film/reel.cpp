@@ -71,8 +71,28 @@ std::vector<Vec3> places_of_tools(recordings::SessionReader& session) {
   return places;
 }
 
+/// Points of what a view draws of the organs at rest [m].
+std::vector<Vec3> drawn_points(const render::SceneView& scene, render::View view) {
+  if (view == render::View::surface) return render::rest_points(scene);
+  const Model& model = *scene.model;
+  std::vector<Vec3> points;
+  for (const OrganRange& organ : model.organs)
+    for (std::int32_t i = organ.first; i < organ.first + organ.count; ++i)
+      for (const double side : {-1.0, 1.0})
+        for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+          points.push_back(Vec3(model.rest_position[std::size_t(i)]) + side * organ.sphere_radius * axis);
+  return points;
+}
+
+/// Whether a film may warn of damage. Of a pair only one session is known here, and both are seen from one place.
+bool may_warn(const Reel& reel, const render::OverlayData& data, bool is_pair) {
+  const bool has_limit = data.damage_force > 0 || data.damage_depth > 0;
+  return (is_pair && has_limit) ||
+         std::ranges::any_of(reel.moments, [](const Moment& moment) { return moment.kind == Moment::Kind::damage; });
+}
+
 /// Moves a camera that nobody placed so that the panels of this film hide little.
-void make_room(Reel& reel, recordings::SessionReader& session, const render::PictureSize& size) {
+void make_room(Reel& reel, recordings::SessionReader& session, const render::PictureSize& size, bool is_pair) {
   render::OverlayData data = reel.film->overlay();
   data.level = reel.level;
   data.history.push_back({});
@@ -80,12 +100,13 @@ void make_room(Reel& reel, recordings::SessionReader& session, const render::Pic
   for (const Moment& moment : reel.moments)
     if (moment.text.size() > data.caption.size()) data.caption = moment.text;
   data.legend = render::legend_of(reel.film->model(), reel.look.draw);
-  data.taken_right = reel.taken_right;
+  data.taken_right = reel.taken_right, data.has_insets = !reel.insets.empty();
+  if (may_warn(reel, data, is_pair)) data.worst = {2 * data.damage_force, 2 * data.damage_depth};
   std::vector<render::PixelBox> panels = reel.overlay->standing_panels(data);
   for (std::size_t i = 0; i < reel.insets.size(); ++i) panels.push_back(Inset::box(size, int(i)));
   if (panels.empty()) return;
-  reel.look.draw.camera = beside_panels(reel.look.draw.camera, size, panels,
-                                        {render::rest_points(reel.renderer->scene()), places_of_tools(session)});
+  const std::vector<Vec3> organs = drawn_points(reel.renderer->scene(), reel.look.draw.view);
+  reel.look.draw.camera = beside_panels(reel.look.draw.camera, size, panels, {organs, places_of_tools(session)});
 }
 
 }  // namespace
@@ -121,7 +142,7 @@ Result<Shot> Reel::shoot(std::int64_t frame) const {
   shot->overlay.stands = frame < ticks.begun    ? render::Stands::before_start
                          : frame >= ticks.ended ? render::Stands::after_end
                                                 : render::Stands::no;
-  shot->overlay.taken_right = taken_right;
+  shot->overlay.taken_right = taken_right, shot->overlay.has_insets = !insets.empty();
   if (ghost) shot->ghost = ghost->hand[std::size_t(frame)], shot->overlay.ghost = ghost->session;
   if (shows_pace) shot->overlay.pace = speed * ticks.share(frame);
   return shot;
@@ -165,7 +186,8 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
   reel.shows_pace = options.speed != 1 || !options.matched.empty() || !options.slow_at.empty();
   reel.level = level_of(options.overlay).value_or(reel.level);
   const bool is_as_first = first && is_of(reel.renderer->scene(), *first);
-  if (reel.look.is_found && !is_as_first) make_room(reel, session, {size.width, height});
+  if (reel.look.is_found && !is_as_first)
+    make_room(reel, session, {size.width, height}, size.width < options.size.width);
   return reel;
 }
 

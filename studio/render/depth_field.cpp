@@ -9,7 +9,10 @@
 namespace ctpm::render {
 namespace {
 
-constexpr double kMostAlong = 80;  // values along the longest side
+constexpr double kMostAlong = 80;       // values along the longest side
+constexpr double kRounding = 1 + 1e-9;  // the ball around a triangle is larger by this, so that nothing is lost
+
+double squared(Vec3 v) { return dot(v, v); }
 
 /// Whether a line along z through (x, y) meets a triangle; of two triangles with a common edge it meets one.
 bool meets(const std::array<Vec3, 3>& corner, double x, double y) {
@@ -44,14 +47,19 @@ DepthField::DepthField(const Surface& surface, double reach, double detail) {
       to[axis] = std::min(count[axis] - 1, int((std::max({x, y, z}) + reach - begin) / step));
     };
     clip(0, a.x, b.x, c.x, low.x), clip(1, a.y, b.y, c.y, low.y), clip(2, a.z, b.z, c.z, low.z);
+    const Vec3 middle = (a + b + c) / 3.0;
+    const double radius =
+        kRounding * std::sqrt(std::max({squared(a - middle), squared(b - middle), squared(c - middle)}));
     for (int k = from[2]; k <= to[2]; ++k)
       for (int j = from[1]; j <= to[1]; ++j)
         for (int i = from[0]; i <= to[0]; ++i) {
           const Vec3 place = low + step * Vec3{i + 0.5, j + 0.5, k + 0.5};
           float& least =
               depth[std::size_t(i) + std::size_t(count[0]) * (std::size_t(j) + std::size_t(count[1]) * std::size_t(k))];
-          const Vec3 apart = place - cutting::nearest_in_triangle(place, a, b, c);
-          if (const double square = dot(apart, apart); square < double(least) * double(least))
+          // Mostly a triangle that was looked at before is nearer than the ball around this one.
+          if (const double within = double(least) + radius; squared(place - middle) > within * within) continue;
+          if (const double square = squared(place - cutting::nearest_in_triangle(place, a, b, c));
+              square < double(least) * double(least))
             least = float(std::sqrt(square));
         }
   }

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstring>
 
+#include "studio/render/wide_loop.h"
+
 namespace ctpm::render {
 namespace {
 
@@ -21,24 +23,28 @@ void find_luma(const std::vector<std::uint8_t>& rgba, std::vector<std::uint8_t>&
   luma.resize(count);
   const std::uint8_t* from = rgba.data();
   std::uint8_t* to = luma.data();
-  for (std::size_t i = 0; i < count; ++i) {
-    std::uint32_t word;
-    std::memcpy(&word, from + 4 * i, 4);
-    const std::uint32_t red = word & 255, green = (word >> 8) & 255, blue = (word >> 16) & 255, alpha = word >> 24;
-    to[i] = std::uint8_t((77 * red + 150 * green + 29 * blue + kBackdropLuma * (255 - alpha)) >> 8);
-  }
+  run_wide([=]() CTPM_WIDE_LOOP {
+    for (std::size_t i = 0; i < count; ++i) {
+      std::uint32_t word;
+      std::memcpy(&word, from + 4 * i, 4);
+      const std::uint32_t red = word & 255, green = (word >> 8) & 255, blue = (word >> 16) & 255, alpha = word >> 24;
+      to[i] = std::uint8_t((77 * red + 150 * green + 29 * blue + kBackdropLuma * (255 - alpha)) >> 8);
+    }
+  });
 }
 
 /// Marks the pixels of a row that differ from their diagonal neighbours.
 void find_edges(const std::uint8_t* row, int width, std::uint8_t* is_edge) {
   const std::uint8_t *above = row - width, *below = row + width;
-  for (int x = 1; x + 1 < width; ++x) {
-    const std::uint8_t low =
-        std::min(std::min(std::min(above[x - 1], above[x + 1]), std::min(below[x - 1], below[x + 1])), row[x]);
-    const std::uint8_t high =
-        std::max(std::max(std::max(above[x - 1], above[x + 1]), std::max(below[x - 1], below[x + 1])), row[x]);
-    is_edge[x] = std::uint8_t(high - low) >= kLeastContrast;
-  }
+  run_wide([=]() CTPM_WIDE_LOOP {
+    for (int x = 1; x + 1 < width; ++x) {
+      const std::uint8_t low =
+          std::min(std::min(std::min(above[x - 1], above[x + 1]), std::min(below[x - 1], below[x + 1])), row[x]);
+      const std::uint8_t high =
+          std::max(std::max(std::max(above[x - 1], above[x + 1]), std::max(below[x - 1], below[x + 1])), row[x]);
+      is_edge[x] = std::uint8_t(high - low) >= kLeastContrast;
+    }
+  });
 }
 
 /// Interpolated colour between pixels.

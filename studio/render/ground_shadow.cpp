@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "studio/render/wide_loop.h"
+
 namespace ctpm::render {
 namespace {
 
@@ -154,7 +156,7 @@ void GroundShadow::draw(Frame& frame, const Mat4& clip_from_world) {
   find_darkness();
   const KnotRange range = find_range(frame, clip_from_world);
   find_knots(frame, clip_from_world, range);
-  light_.resize(std::size_t(3 * kStep * range.columns()));
+  light_.resize(std::size_t(kStep * range.columns()));
   for (int r = range.top; r + 1 < range.bottom; ++r)
     for (int y = r * kStep; y < std::min(frame.height, (r + 1) * kStep); ++y) darken_row(frame, range, y);
 }
@@ -170,19 +172,23 @@ void GroundShadow::darken_row(Frame& frame, const KnotRange& range, int y) {
   while (begin < end && at(end) + at(end - 1) == 0) --end;
   if (begin == end) return;
   for (int c = begin; c < end; ++c) {
-    std::uint16_t* light = &light_[std::size_t(3 * kStep * (c - begin))];
+    std::uint16_t* light = &light_[std::size_t(kStep * (c - begin))];
     const float left = 65535 * (1 - at(c)), step = 65535 * (at(c) - at(c + 1)) / kStep;
-    for (int k = 0; k < kStep; ++k)
-      light[3 * k] = light[3 * k + 1] = light[3 * k + 2] = std::uint16_t(left + float(k) * step);
+    for (int k = 0; k < kStep; ++k) light[k] = std::uint16_t(left + float(k) * step);
   }
   const int first = (range.left + begin) * kStep, last = std::min(frame.width, (range.left + end) * kStep);
   std::uint8_t* to = &frame.rgb[(std::size_t(y) * std::size_t(frame.width) + std::size_t(first)) * 3];
   const std::uint16_t* light = light_.data();
+  const int count = last - first;
   // In 16 bits, so that the compiler vectorises the loop: colour * light in 1/256, rounded.
-  for (int i = 0; i < 3 * (last - first); ++i) {
-    const std::uint16_t product = std::uint16_t((std::uint32_t(to[i] << 8) * light[i]) >> 16);
-    to[i] = std::uint8_t(std::uint16_t(product + 128) >> 8);
-  }
+  run_wide([=]() CTPM_WIDE_LOOP {
+    const auto darken = [](std::uint8_t colour, std::uint16_t by) CTPM_WIDE_LOOP {
+      const std::uint16_t product = std::uint16_t((std::uint32_t(colour << 8) * by) >> 16);
+      return std::uint8_t(std::uint16_t(product + 128) >> 8);
+    };
+    for (int i = 0; i < count; ++i)
+      for (int k = 0; k < 3; ++k) to[3 * i + k] = darken(to[3 * i + k], light[i]);
+  });
 }
 
 }  // namespace ctpm::render

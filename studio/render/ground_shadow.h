@@ -50,7 +50,7 @@ class GroundShadow {
   std::vector<float> lowest_;                          ///< height of the lowest surface [reach] (kSize x kSize)
   std::vector<float> touched_, narrow_, wide_, swap_;  ///< (kSize x kSize)
   std::vector<float> knots_;                           ///< darkness at a coarse grid of pixels in a part of the picture
-  std::vector<std::uint16_t> light_;  ///< share of light left, 65535 = all; one row, each colour channel
+  std::vector<std::uint16_t> light_;                   ///< share of light left, 65535 = all; one row
 };
 
 }  // namespace ctpm::render

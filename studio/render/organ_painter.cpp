@@ -22,7 +22,7 @@ Vec3 rind_colour(const OrganLook& look) {
 }  // namespace
 
 Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
-  for (const OrganPass pass : {OrganPass::outside, OrganPass::inside, OrganPass::glassy})
+  for (const OrganPass pass : {OrganPass::outside, OrganPass::near_cut, OrganPass::inside, OrganPass::glassy})
     for (const bool cutaway : {false, true}) {
       const ShaderSource source = organ_shader(pass, cutaway);
       auto made = Program::create(gl, "organ", source.vertex, source.fragment);
@@ -44,12 +44,12 @@ Result<Done> OrganPainter::create(const Gl& gl, const SceneView& scene) {
       array->attribute(gl, 0, 3, 0, kOrganVertexFloats), array->attribute(gl, 1, 3, 3, kOrganVertexFloats);
       array->attribute(gl, 2, 3, 6, kOrganVertexFloats), array->attribute(gl, 3, 4, 9, kOrganVertexFloats);
     }
-    if (!scene.looks[i].layers.empty()) add_depth(gl, organ, scene.model->surfaces[i], scene.looks[i]);
   }
   return Done{};
 }
 
-/// The texture that tells how deep a place of an organ is: for its layers, and for the shades of sections.
+/// The texture that tells how deep a place of an organ is: for its layers, and for the shades of sections. It takes a
+/// moment to make, so an organ without a wall or section goes without.
 void OrganPainter::add_depth(const Gl& gl, Organ& organ, const Surface& surface, const OrganLook& look) {
   if (organ.depth_texture || surface.triangle.empty()) return;
   organ.relief_width = kReliefWidth * bounds_of(surface.vertex).diagonal();
@@ -75,8 +75,11 @@ void OrganPainter::update(const Gl& gl, const State& state) {
     CutSurface& cut = (*cuts_)[i];
     cut.update(state);  // for another Renderer it may be as it should be already
     const Surface& surface = cut.surface();
-    if (organ.seen != cut.changes())
-      organ.mesh.set_surface(surface, nearness_to_lips(surface, cut.is_lip(), organ.ooze), cut.rind(), cut.at_rest());
+    if (organ.seen != cut.changes()) {
+      const std::vector<float> lip = nearness_to_lips(surface, cut.is_lip(), organ.ooze);
+      organ.mesh.set_surface(surface, lip, cut.rind(), cut.at_rest());
+      organ.oozes = find_oozing(cut, lip);
+    }
     organ.seen = cut.changes();
     organ.mesh.update(*drawn_, i, surface, state);
     organ.array.set_stream(gl, organ.mesh.vertices());
@@ -103,7 +106,8 @@ void OrganPainter::add_shadows(GroundShadow& shadow, const Cutaway& cutaway) con
 
 std::vector<const Program*> OrganPainter::programs(const DrawOptions& options) const {
   if (options.view == View::both) return {&program(OrganPass::glassy, options)};
-  std::vector<const Program*> used{&program(OrganPass::outside, options), &program(OrganPass::inside, options)};
+  std::vector<const Program*> used{&program(OrganPass::outside, options), &program(OrganPass::near_cut, options),
+                                   &program(OrganPass::inside, options)};
   if (options.cutaway.is_on()) used.insert(used.end(), {&programs_[std::size_t(OrganPass::inside)][false], &count_});
   return used;
 }
@@ -120,26 +124,39 @@ void OrganPainter::set_look(const Program& program, const OrganLook& look, const
   program.set("cutaway_point", options.cutaway.point), program.set("cutaway_normal", options.cutaway.normal);
 }
 
+std::vector<std::uint8_t> OrganPainter::find_oozing(const CutSurface& cut, const std::vector<float>& lip) {
+  std::vector<std::uint8_t> oozes;
+  if (cut.is_lip().empty()) return oozes;
+  const auto& triangles = cut.surface().triangle;
+  oozes.resize(cut.outer_triangle_count());
+  for (std::size_t i = 0; i < oozes.size(); ++i)
+    oozes[i] = std::ranges::any_of(triangles[i], [&](std::int32_t v) { return lip[std::size_t(v)] > kLeastOoze; });
+  return oozes;
+}
+
 /// Sorting here is cheaper than letting the software pipeline transform every triangle once for each pass.
-OrganPainter::Order OrganPainter::sort_triangles(const Organ& organ, Vec3 eye, bool needs_averted) {
+OrganPainter::Order OrganPainter::sort_triangles(const Organ& organ, const DrawOptions& options) {
   const Surface& surface = cut_of(organ).surface();
   const std::vector<Vec3>& p = organ.mesh.positions();
   const std::size_t outer = cut_of(organ).outer_triangle_count();
-  indices_.clear(), averted_.clear();
+  // Layers of glass keep their order.
+  const bool is_glassy = options.view == View::both, needs_averted = !is_glassy && options.cutaway.is_on();
+  indices_.clear(), near_cut_.clear(), averted_.clear();
   const auto add = [&](std::vector<std::uint32_t>& list, const std::array<std::int32_t, 3>& t) {
     for (const std::int32_t v : t) list.push_back(std::uint32_t(v));
   };
   for (std::size_t i = 0; i < outer; ++i) {
     const auto& t = surface.triangle[i];
     const Vec3 a = p[std::size_t(t[0])], n = cross(p[std::size_t(t[1])] - a, p[std::size_t(t[2])] - a);
-    if (dot(n, eye - a) >= 0)
-      add(indices_, t);
+    if (dot(n, options.camera.eye - a) >= 0)
+      add(is_glassy || organ.oozes.empty() || !organ.oozes[i] ? indices_ : near_cut_, t);
     else if (needs_averted)
       add(averted_, t);
   }
-  Order order{indices_.size(), 0, averted_.size()};
+  Order order{indices_.size(), near_cut_.size(), 0, averted_.size()};
+  indices_.insert(indices_.end(), near_cut_.begin(), near_cut_.end());
   for (std::size_t i = outer; i < surface.triangle.size(); ++i) add(indices_, surface.triangle[i]);
-  order.wall = indices_.size() - order.facing;
+  order.wall = indices_.size() - order.outside - order.near_cut;
   indices_.insert(indices_.end(), averted_.begin(), averted_.end());
   return order;
 }
@@ -157,18 +174,26 @@ void OrganPainter::draw(const Gl& gl, const SceneView& scene, const DrawOptions&
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     Organ& organ = organs_[i];
     const bool has_section = !glassy && options.cutaway.is_on();
-    const Order order = sort_triangles(organ, options.camera.eye, has_section);
+    const Order order = sort_triangles(organ, options);
     organ.array.set_indices(gl, indices_);
     // Triangles that face the eye come first, because they hide most of the rest. Surface and walls are watertight:
     // nobody sees an inner face.
     set_look(outside, scene.looks[i], options);
-    draw_indices(0, order.facing);
+    if (glassy) outside.set("blood", scene.looks[i].blood);
+    draw_indices(0, order.outside);
     if (glassy) continue;
+    if (order.near_cut > 0) {
+      const Program& near_cut = program(OrganPass::near_cut, options);
+      set_look(near_cut, scene.looks[i], options);
+      near_cut.set("blood", scene.looks[i].blood);
+      draw_indices(order.outside, order.near_cut);
+    }
     if (order.wall > 0) {
+      if (!scene.looks[i].layers.empty()) add_depth(gl, organ, scene.model->surfaces[i], scene.looks[i]);
       set_look(inside, scene.looks[i], options);
       set_layers(gl, inside, organ, scene.looks[i]);
       inside.set("blood", scene.looks[i].blood);
-      draw_indices(order.facing, order.wall);
+      draw_indices(order.outside + order.near_cut, order.wall);
     }
     if (has_section) draw_section(gl, organ, scene.looks[i], options);
   }

@@ -57,21 +57,23 @@ class OrganPainter {
     double relief_width = 0;            ///< of the shades in a section [m]
     std::optional<std::uint64_t> seen;  ///< the changes of its surface that `mesh` has taken over
     double ooze = 0;  ///< how far blood oozes out of a cut: as far as triangles reach where nothing is cut [m]
+    std::vector<std::uint8_t> oozes = {};  ///< whether an outer triangle is beside a cut; empty: none is
   };
 
-  /// Index ranges of one organ: triangles that face the eye, walls of cuts, triangles that face away, which only a
-  /// cutaway's section counts.
+  /// Index ranges of one organ: triangles that face the eye far from cuts and beside them, walls of cuts, triangles
+  /// that face away, which only a cutaway's section counts.
   struct Order {
-    std::size_t facing = 0, wall = 0, averted = 0;  ///< counts of indices
+    std::size_t outside = 0, near_cut = 0, wall = 0, averted = 0;  ///< counts of indices
   };
   const CutSurface& cut_of(const Organ& organ) const { return (*cuts_)[organ.number]; }
-  Order sort_triangles(const Organ& organ, Vec3 eye, bool needs_averted);
+  static std::vector<std::uint8_t> find_oozing(const CutSurface& cut, const std::vector<float>& lip);
+  Order sort_triangles(const Organ& organ, const DrawOptions& options);
 
   std::unique_ptr<contact::DrawnSurfaces> drawn_;
   std::unique_ptr<cutting::RestMap> rest_map_;
   std::vector<Organ> organs_;
   std::shared_ptr<std::vector<CutSurface>> cuts_;  ///< one for each organ
-  std::vector<std::uint32_t> indices_, averted_;
+  std::vector<std::uint32_t> indices_, near_cut_, averted_;
   const Program& program(OrganPass pass, const DrawOptions& options) const {
     return programs_[std::size_t(pass)][options.cutaway.is_on()];
   }
@@ -80,7 +82,7 @@ class OrganPainter {
   static void set_layers(const Gl& gl, const Program& program, const Organ& organ, const OrganLook& look);
   void draw_section(const Gl& gl, const Organ& organ, const OrganLook& look, const DrawOptions& options);
 
-  Program programs_[3][2];  ///< [OrganPass][has_cutaway]
+  Program programs_[kOrganPasses][2];  ///< [OrganPass][has_cutaway]
   Program count_;
 };
 

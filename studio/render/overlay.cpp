@@ -124,13 +124,13 @@ void draw_panel(cv::Mat& rgb, const PixelBox& box, const Ink& tint, int opacity,
 /// How much of a panel is shown: less the nearer the tools are, so that they are never hidden.
 double share_shown(const PixelBox& box, const std::vector<Pixel>& tools, double reach) {
   constexpr double kLeast = 0.12;
-  double nearest = reach;
+  double nearest = reach * reach;
   for (const Pixel& p : tools) {
     const double x = std::max({box.x - p.x, p.x - box.x - box.width, 0.0}),
                  y = std::max({box.y - p.y, p.y - box.y - box.height, 0.0});
-    nearest = std::min(nearest, std::hypot(x, y));
+    nearest = std::min(nearest, x * x + y * y);
   }
-  return kLeast + (1 - kLeast) * nearest / reach;
+  return kLeast + (1 - kLeast) * std::sqrt(nearest) / reach;
 }
 
 /// The pixels below a panel, to let them shine through it afterwards.
@@ -339,12 +339,14 @@ void Overlay::Parts::plan_plot(const OverlayData& data, Plan& plan) {
   plan.lines.push_back(now);
 }
 
-/// Bottom right, above the place of the warning, or above the facts.
+/// Bottom right, above the place of the warning, or above the facts; where small pictures stand there, below the
+/// verdict.
 void Overlay::Parts::plan_legend(const OverlayData& data, Plan& plan) {
   if (data.legend.title.empty()) return;
   const int pad = px(16), w = px(250), h = px(98);
-  const int bottom = is_narrow ? plan.facts.y - px(10) : height - px(20) - px(43) - px(10);
-  plan.legend = {width - px(20) - w - data.taken_right, bottom - h, w, h};
+  const int bottom = is_narrow ? plan.facts.y - px(10) : height - px(20) - px(43) - px(10), right = width - px(20) - w;
+  plan.legend = {right - data.taken_right, bottom - h, w, h};
+  if (data.has_insets) plan.legend = {is_narrow ? px(20) : right, px(20) + (is_narrow ? 2 : 1) * px(53), w, h};
   const int x = plan.legend.x + pad, inner = w - 2 * pad, y = plan.legend.y + px(12);
   plan.lines.push_back(line(small, small.shortened(data.legend.title, inner), x, y, kGrey));
   plan.bar = {x, y + px(30), inner, px(16)};
@@ -376,7 +378,7 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
   if (data.level == OverlayLevel::none) return;
   int bottom = height - margin;
   if (is_narrow)
-    for (const PixelBox& box : {plan.facts, plan.plot, plan.legend})
+    for (const PixelBox& box : {plan.facts, plan.plot, data.has_insets ? PixelBox{} : plan.legend})
       if (box.height > 0) bottom = std::min(bottom, box.y - px(10));
   const bool is_alone = data.level == OverlayLevel::caption;
   if (const std::string text = damage_text(data); !text.empty() && !is_alone)
@@ -385,9 +387,9 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
   // Between the plot and the legend and above the warning; in the middle of the picture where it fits there.
   const bool is_free = is_narrow || is_alone;
   const int left = is_free ? px(5) : plan.plot.height > 0 ? plan.plot.x + plan.plot.width + px(10) : margin;
-  const int right = is_free                  ? width - px(5)
-                    : plan.legend.height > 0 ? plan.legend.x - px(10)
-                                             : width - margin - data.taken_right;
+  const int right = is_free                                      ? width - px(5)
+                    : plan.legend.height > 0 && !data.has_insets ? plan.legend.x - px(10)
+                                                                 : width - margin - data.taken_right;
   // A still has nothing else to make room for; beside small pictures there is less room.
   const std::size_t most = is_alone || data.taken_right > 0 ? 2 : 1;
   const std::vector<std::string> texts = large.in_lines(data.caption, right - left - 2 * pad, most);
@@ -488,7 +490,7 @@ std::vector<PlacedText> Overlay::layout(const OverlayData& data) {
 std::vector<PixelBox> Overlay::standing_panels(const OverlayData& data) {
   const Plan plan = parts_->plan(data);
   std::vector<PixelBox> panels;
-  for (const PixelBox& box : {plan.names, plan.facts, plan.plot, plan.verdict, plan.legend, plan.caption})
+  for (const PixelBox& box : {plan.names, plan.facts, plan.plot, plan.verdict, plan.legend, plan.warning, plan.caption})
     if (box.height > 0) panels.push_back(box);
   return panels;
 }

@@ -61,6 +61,7 @@ struct OverlayData {
   double least_top_force = 0.1;     ///< smallest upper end of the plot's axis [N], > 0
   std::vector<Pixel> tools;         ///< points of the tools: panels near them fade
   int taken_right = 0;              ///< width at the lower right where small pictures stand [pixels]
+  bool has_insets = false;          ///< there are small pictures; in a narrow picture at the right above the panels
 };
 
 /// The next round number at or above `value`, at least 1e-3: 1, 2 or 5 times a power of ten.

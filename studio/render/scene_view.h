@@ -33,11 +33,11 @@ inline constexpr std::size_t kMostLayerLooks = 8;
 
 /// How one organ looks.
 struct OrganLook {
-  std::string name;                 ///< of the organ
-  Colour outer{0.50, 0.17, 0.13};   ///< of its surface
-  Colour inner{0.46, 0.06, 0.06};   ///< of its inside, visible where it is cut
-  double wetness = 1;               ///< strength of specular reflection by a wet film, in [0, 1]
-  double blood = 1;                 ///< on the walls of fresh cuts, not on sections, in [0, 1]; a picture, no physics
+  std::string name;                ///< of the organ
+  Colour outer{0.50, 0.17, 0.13};  ///< of its surface
+  Colour inner{0.46, 0.06, 0.06};  ///< of its inside, visible where it is cut
+  double wetness = 1;              ///< strength of specular reflection by a wet film, in [0, 1]
+  double blood = 1;  ///< on fresh walls and around them, not on sections, in [0, 1]; a picture, no physics
   std::vector<LayerLook> layers{};  ///< outermost first; empty: the outermost spheres are a little paler
 };
 

@@ -100,6 +100,17 @@ Smooth smooth_light(vec3 p, vec3 n, vec3 base, float shade, float mirror) {
 }
 )";
 
+// What the outside's pixels get from its vertices, in few slots: with thousands of small triangles, what each carries
+// costs as much as what is done with it.
+const char* const kCarried = R"(
+#ifndef INSIDE
+CARRIED vec4 body_film, key_side_mirror, eye_side_mirror, turn, place_mirror;
+#ifdef OOZES
+CARRIED float lip;
+#endif
+#endif
+)";
+
 const char* const kOrganVertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -111,10 +122,6 @@ out vec3 p;
 #ifdef INSIDE
 out vec3 n, at_rest;
 out vec3 shadow_stain_rind;
-#else
-out vec3 q;
-out Smooth slow;
-out float lip;
 #endif
 void main() {
   float hollow = crevice_stain_lip_rind.x, stain = crevice_stain_lip_rind.y;
@@ -124,14 +131,18 @@ void main() {
 #ifdef INSIDE
   n = normal; at_rest = rest; shadow_stain_rind = vec3(shade, stain, crevice_stain_lip_rind.w);
 #else
-  q = bend(rest);
   vec3 base = outer_colour * (1.0 + 0.20 * stain);
   base = mix(base, base * vec3(1.12, 0.86, 0.80), clamp(stain, 0.0, 1.0));
   base *= 1.0 + 0.6 * clamp(hollow, 0.0, 0.3);
   // At the outline and beyond it a normal turns away, and would mirror the dark floor along it.
   vec3 v = normalize(eye - position);
-  slow = smooth_light(position, normalize(normal + max(0.15 - dot(normal, v), 0.0) * v), base, shade, 1.0);
+  Smooth slow = smooth_light(position, normalize(normal + max(0.15 - dot(normal, v), 0.0) * v), base, shade, 1.0);
+  body_film = vec4(slow.body, slow.film);
+  key_side_mirror = vec4(slow.key_side, slow.mirror.x), eye_side_mirror = vec4(slow.eye_side, slow.mirror.y);
+  turn = slow.turn, place_mirror = vec4(bend(rest), slow.mirror.z);
+#ifdef OOZES
   lip = crevice_stain_lip_rind.z;
+#endif
 #endif
   gl_Position = clip_from_world * vec4(position, 1.0);
 }
@@ -193,11 +204,9 @@ in vec3 p;
 in vec3 n, at_rest;
 in vec3 shadow_stain_rind;
 uniform float blood;  // 0: none, as in a section; 1: a fresh wall
-#else
-in vec3 q;
-in Smooth slow;
-in float lip;
+#elif defined OOZES
 uniform vec3 lip_tint;
+uniform float blood;  // 0: none oozes
 #endif
 uniform vec3 cutaway_point, cutaway_normal;
 out vec4 colour;
@@ -220,14 +229,17 @@ void main() {
   Smooth slow = smooth_light(p, m, base, shadow_stain_rind.x, mirror);
 #else
   const float kRough = 0.017, kStained = 0.035;
-vec4 fine = relief(q);
+  vec4 fine = relief(place_mirror.xyz);
+  Smooth slow = Smooth(body_film.rgb, key_side_mirror.xyz, eye_side_mirror.xyz, turn,
+                       vec3(key_side_mirror.w, eye_side_mirror.w, place_mirror.w), body_film.a);
 #endif
   float to_key = -kRough * dot(fine.xyz, slow.key_side), to_eye = -kRough * dot(fine.xyz, slow.eye_side);
   float facing = slow.turn.x + to_eye;
   vec3 c = slow.body * (1.0 + kStained * fine.a + slow.turn.z * to_key);
-#ifndef INSIDE
-  // Blood oozes out of a cut, further where the relief lets it; a closed cut stays visible.
-  c *= mix(vec3(1.0), vec3(0.72, 0.20, 0.18), 0.8 * smoothstep(0.42, 0.78, lip + 0.15 * fine.a));
+#ifdef OOZES
+  // Blood oozes out of a cut, here a little further than there, and runs out softly; a closed cut stays visible.
+  float reached = lip + 1.1 * gyroid(place_mirror.xyz * 61.0).w;
+  c *= mix(vec3(1.0), vec3(0.72, 0.20, 0.18), 0.8 * blood * smoothstep(0.36, 0.84, reached));
   c *= mix(vec3(1.0), lip_tint, 0.9 * smoothstep(0.62, 0.92, lip));
 #endif
   // The mirrored way turns by twice as much; the film is half as rough as the tissue below.
@@ -389,12 +401,14 @@ std::string join(std::initializer_list<const char*> parts) {
 }  // namespace
 
 ShaderSource organ_shader(OrganPass pass, bool has_cutaway) {
-  const char* const side = pass == OrganPass::inside   ? "#define INSIDE\n"
-                           : pass == OrganPass::glassy ? "#define GLASSY\n"
-                                                       : "";
+  const char* const side = pass == OrganPass::inside     ? "#define INSIDE\n"
+                           : pass == OrganPass::near_cut ? "#define OOZES\n"
+                           : pass == OrganPass::glassy   ? "#define OOZES\n#define GLASSY\n"
+                                                         : "";
   const char* const cutaway = has_cutaway ? "#define CUTAWAY\n" : "";
-  return {join({side, cutaway, kLight, kShade, kSmooth, kBend, kOrganVertex}),
-          join({side, cutaway, kLight, kShade, kSmooth, kBend, kRelief, kTissue, kOrganFragment})};
+  return {join({side, cutaway, "#define CARRIED out\n", kLight, kShade, kSmooth, kBend, kCarried, kOrganVertex}),
+          join({side, cutaway, "#define CARRIED in\n", kLight, kShade, kSmooth, kBend, kRelief, kTissue, kCarried,
+                kOrganFragment})};
 }
 ShaderSource count_shader() { return {join({kCountVertex}), join({kCountFragment})}; }
 ShaderSource tool_shader() { return {join({kToolVertex}), join({kLight, kToolFragment})}; }

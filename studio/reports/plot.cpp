@@ -157,7 +157,7 @@ struct Drawing {
     for (const double v : x.ticks(7)) {
       if (plot.counts_x && std::abs(v - std::round(v)) > 1e-6) continue;
       add_line(svg, x.at(v), top, x.at(v), bottom, "grid");
-      add_text(svg, x.at(v), bottom + 16, "middle", "tick", output::short_number(v));
+      add_text(svg, x.at(v), bottom + 18, "middle", "tick", output::short_number(v));
     }
     for (const double v : y.ticks(kYTicks)) {
       add_line(svg, left, y.at(v), right, y.at(v), "grid");

@@ -75,12 +75,19 @@ class Page {
 
   /// What moves most with what varies; empty: nothing that is not likely by chance.
   std::string finding(const std::vector<Relation>& relations) const {
-    constexpr double kClear = 0.5;  // of a rank correlation
-    if (relations.empty() || std::abs(relations[0].correlation) < kClear) return "";
-    const Relation& closest = relations[0];
-    return collection_.measures[closest.measure] + (closest.correlation > 0 ? " rises" : " falls") +
-           " most clearly with " + plan_.columns[closest.column] + ": rank correlation " +
-           output::fixed(closest.correlation, 2) + ".";
+    constexpr double kClear = 0.5;     // of a rank correlation
+    constexpr double kMatters = 0.01;  // of the largest value: what varies by less, moves nothing however clearly
+    const auto found = std::ranges::find_if(relations, [&](const Relation& relation) {
+      const Spread& spread = spreads_[relation.measure];
+      return spread.most - spread.least > kMatters * std::max(std::abs(spread.least), std::abs(spread.most));
+    });
+    if (found == relations.end() || std::abs(found->correlation) < kClear) return "";
+    const Spread& spread = spreads_[found->measure];
+    const bool rises = found->correlation > 0;
+    const std::string least = output::short_number(spread.least, 3), most = output::short_number(spread.most, 3);
+    return collection_.measures[found->measure] + (rises ? " rises" : " falls") + " most clearly with " +
+           plan_.columns[found->column] + ": from " + (rises ? least + " to " + most : most + " to " + least) +
+           " over the sessions, rank correlation " + output::fixed(found->correlation, 2) + ".";
   }
 
   void conclude(reports::Report& report, const std::vector<Relation>& relations) const {

@@ -185,7 +185,7 @@ Result<Done> VideoWriter::Parts::close() {
   return h264 ? of_video(h264->finish()) : Done{};
 }
 
-/// Reopens the closed temporary file and counts its frames.
+/// Reopens the closed temporary file, decodes its first frame and counts all.
 Result<VideoFacts> VideoWriter::Parts::check_file() const {
   VideoFacts facts{path, format.codec, note, 0, 0, 0, 0, 0};
   try {
@@ -194,6 +194,12 @@ Result<VideoFacts> VideoWriter::Parts::check_file() const {
       return Error{path, "the video that was written cannot be opened again", "check the free space"};
     facts.width = int(reader.get(cv::CAP_PROP_FRAME_WIDTH)), facts.height = int(reader.get(cv::CAP_PROP_FRAME_HEIGHT));
     facts.fps = reader.get(cv::CAP_PROP_FPS);
+    if (cv::Mat first; !reader.read(first))
+      return Error{path, "no frame of the video that was written can be decoded", "check the free space"};
+    // As packets: to decode all of them takes a good part of the time that it took to encode them.
+    const std::vector<int> as_packets{cv::CAP_PROP_FORMAT, -1};
+    if (!reader.open(part, format.backend, format.is_h264() ? as_packets : std::vector<int>()))
+      return Error{path, "the video that was written cannot be opened again", "check the free space"};
     while (reader.grab()) ++facts.frames;
   } catch (const cv::Exception& problem) {
     return Error{path, "the video that was written cannot be read: " + problem.err, ""};

@@ -31,16 +31,17 @@ constexpr double kGone = 0.5;
 
 void append(std::vector<Vec3>& all, const std::vector<Vec3>& more) { all.insert(all.end(), more.begin(), more.end()); }
 
-/// Finds where the walls of all cuts are, without those of pieces that are gone.
-void find_walls(const render::SceneView& scene, const State& state, Subject& subject) {
-  const Model& model = *scene.model;
-  const render::Bounds bounds = render::rest_bounds(scene);
+/// Finds where the walls of all cuts are, without those of pieces that are gone. The cuts are kept for the Renderer.
+void find_walls(const State& state, Subject& subject) {
+  const Model& model = *subject.scene.model;
+  const render::Bounds bounds = render::rest_bounds(subject.scene);
   const Box around = Box(bounds.min, bounds.max).grown(kGone * bounds.diagonal());
   std::vector<Vec3> position;
   contact::DrawnSurfaces drawn(model);
+  subject.scene.cuts = std::make_shared<std::vector<render::CutSurface>>();
   for (std::size_t organ = 0; organ < model.surfaces.size(); ++organ) {
+    render::CutSurface& cut = subject.scene.cuts->emplace_back(model, organ);
     if (model.surfaces[organ].triangle.empty()) continue;
-    render::CutSurface cut(model, organ);
     cut.update(state);
     drawn.place(organ, cut.surface(), state, position);
     const std::size_t before = subject.points.size();
@@ -73,7 +74,7 @@ Subject wound_of(const render::SceneView& scene, const State& state) {
   Subject subject{{scene.model, {}, {}}, render::View::surface, {}, {}};
   if (state.swept.size() == 0) return subject;
   for (const OrganRange& organ : scene.model->organs) subject.scene.looks.push_back({organ.name, kGrey, kGreen, 0, {}});
-  find_walls(scene, state, subject);
+  find_walls(state, subject);
   return subject;
 }
 

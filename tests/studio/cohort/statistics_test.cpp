@@ -47,6 +47,12 @@ TEST(CohortStatistics, ASpreadNeedsTwoValues) {
   EXPECT_FALSE(cohort::spread_of(std::vector<double>{1.0}));
 }
 
+TEST(CohortStatistics, WhatDiffersByRoundingHasNoSpread) {
+  EXPECT_EQ(cohort::spread_of(std::vector<double>{49.83, 49.83 * (1 + 3e-16), 49.83})->deviation, 0);
+  EXPECT_EQ(cohort::spread_of(std::vector<double>{0.1 + 0.2, 0.3, 0.3})->deviation, 0);
+  EXPECT_GT(cohort::spread_of(std::vector<double>{49.83, 49.83 * (1 + 1e-9)})->deviation, 0);
+}
+
 TEST(CohortStatistics, TheSumOfFailuresIsThatOfTheReferenceAndALimitThatIsMetCounts) {
   std::vector<bool> passed;
   for (const char c : std::string("0001011111111111111111111000")) passed.push_back(c == '1');

@@ -83,19 +83,39 @@ TEST_F(BesidePanels, WhatIsTooLargeToBeFreeIsNotPushedOutOfThePicture) {
   EXPECT_LE(hidden(found, organ, panels), hidden(camera_, organ, panels));
 }
 
+TEST_F(BesidePanels, WhatDoesNotFitBetweenThemIsSeenFromFartherAway) {
+  const std::vector<Vec3> organ = plate(-0.14, 0.14);
+  const std::vector<render::PixelBox> panels{{0, 0, 300, 720}, {980, 0, 300, 720}};
+  const auto found = film::beside_panels(camera_, kSize, panels, {organ, {}});
+  EXPECT_GT(hidden(camera_, organ, panels), 100);
+  EXPECT_LE(hidden(found, organ, panels), 8) << "1 % is not worth a step";
+  const auto distance = [](const render::Camera& c) { return norm(c.eye - c.target); };
+  EXPECT_GT(distance(found), distance(camera_));
+  EXPECT_LT(distance(found), 1.4 * distance(camera_)) << "it stays large";
+}
+
 TEST(Insets, HideNoWordsOfTheOverlay) {
-  for (const render::PictureSize& size : {render::PictureSize{1280, 720}, {1920, 1080}, {640, 720}, {960, 1080}}) {
-    render::OverlayData data;
-    data.title = "liver", data.model = "CTPM", data.session = "liver-press-clumsy", data.pace = 1;
-    data.hand = {3, 0.018}, data.damage_depth = 0.012, data.verdict = "replay same as recorded";
-    data.caption = "tissue damage: deeper than 12 mm", data.history = {{0, 3}};
-    data.taken_right = film::Inset::taken_right(size);
-    for (const render::PlacedText& text : render::Overlay(size.width, size.height).layout(data))
-      for (const int place : {0, 1}) {
-        EXPECT_FALSE(film::Inset::box(size, place).overlaps(text.box)) << text.text << " " << size.width;
-        EXPECT_FALSE(text.text.ends_with("...")) << text.text;
+  for (const bool has_legend : {false, true})
+    for (const render::PictureSize& size : {render::PictureSize{1280, 720}, {1920, 1080}, {640, 720}, {960, 1080}}) {
+      render::OverlayData data;
+      data.title = "liver", data.model = "CTPM", data.session = "liver-press-clumsy", data.pace = 1;
+      data.hand = {3, 0.018}, data.damage_depth = 0.012, data.verdict = "replay same as recorded";
+      data.caption = "tissue damage: deeper than 12 mm", data.history = {{0, 3}};
+      data.taken_right = film::Inset::taken_right(size), data.has_insets = true;
+      if (has_legend) data.legend = {"layer, red: cut", "1", "4", {{1, 0, 0}, {0, 0, 1}}, true};
+      const auto boxes = render::Overlay(size.width, size.height).standing_panels(data);
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        for (std::size_t k = 0; k < i; ++k)
+          EXPECT_FALSE(boxes[i].overlaps(boxes[k])) << i << " " << k << " " << size.width;
+        for (const int place : {0, 1})
+          EXPECT_FALSE(film::Inset::box(size, place).overlaps(boxes[i])) << i << " " << size.width;
       }
-  }
+      for (const render::PlacedText& text : render::Overlay(size.width, size.height).layout(data))
+        for (const int place : {0, 1}) {
+          EXPECT_FALSE(film::Inset::box(size, place).overlaps(text.box)) << text.text << " " << size.width;
+          EXPECT_FALSE(text.text.ends_with("...")) << text.text;
+        }
+    }
 }
 
 }  // namespace

@@ -101,8 +101,9 @@ TEST_F(SweepProgram, RecordsEverySessionAsRecordWould) {
                                              folder());
   EXPECT_EQ(python.out, "6 7.0 done 16 0\n") << python.err;
   const std::string page = slurp(out() / "report.html");
-  for (const char* part : {"All 6 sessions were recorded.", "rises most clearly with", "max_force_n by stiffness_scale",
-                           "Means by distance_mm"})
+  for (const char* part :
+       {"All 6 sessions were recorded.", "rises most clearly with", " over the sessions, rank correlation ",
+        "max_force_n by stiffness_scale", "Means by distance_mm"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
 }
 
