@@ -349,14 +349,19 @@ double contact_radius_of(const FilledOrgan& organ, std::size_t sphere) {
   return std::clamp(organ.depth[sphere], organ.sphere_radius, organ.spacing);
 }
 
+/// Static Young's modulus of the full lattice of a material [Pa].
+double modulus_of(const Material& material, const FilledOrgan& organ, Structure structure) {
+  return kYoungOverEdge * slow_edge_k(structure, stiffness_of(material, organ.spacing)) / organ.spacing;
+}
+
 /// The tissue that a tool dents: that half a spacing below the surface, with the static modulus of the full lattice.
 void set_foundation(OrganRange& range, const FilledOrgan& organ, const OrganSettings& settings) {
   const Material* material = &settings.material;
   for (auto layer = settings.layers.rbegin(); layer != settings.layers.rend(); ++layer)
     if (layer->to_depth > 0.5 * organ.spacing) material = &layer->material;
-  const Stiffness s = stiffness_of(*material, organ.spacing);
-  range.modulus = kYoungOverEdge * slow_edge_k(settings.structure, s) / organ.spacing;
+  range.modulus = modulus_of(*material, organ, settings.structure);
   if (settings.structure != Structure::tpm && settings.structure != Structure::ctpm) return;
+  const Stiffness s = stiffness_of(*material, organ.spacing);
   range.instant_ratio = 1 + s.spring_k / s.kelvin_k;
   range.kelvin_time = s.kelvin_c / s.kelvin_k;
 }
@@ -370,8 +375,7 @@ constexpr double kEdgeStrain = 0.06;
 double blade_reach_of(const FilledOrgan& organ, const OrganSettings& settings) {
   double reach = 0;
   const auto add = [&](const Material& material) {
-    const double edge_k = slow_edge_k(settings.structure, stiffness_of(material, organ.spacing));
-    const double modulus = kYoungOverEdge * edge_k / organ.spacing;
+    const double modulus = modulus_of(material, organ, settings.structure);
     reach = std::max(reach, material.fracture_toughness / (std::numbers::pi * kEdgeStrain * modulus));
   };
   add(settings.material);

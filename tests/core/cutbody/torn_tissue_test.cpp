@@ -26,14 +26,30 @@ std::function<cutting::Front(double)> stroke(double from, double to, double low 
 constexpr double kLeft = -0.06, kRight = 0.06;  // beyond the block
 constexpr double kHole = 0.0015, kHoleEnd = 0.0058;
 
+/// How the spheres of both sides move [m].
+const Vec3 kToLeft{-0.02, 0, 0.01}, kToRight{0.05, 0.01, 0};
+
+/// Every vertex above a height moves with one side or the other.
+void expect_two_sides(const testing::DrawnCut& drawn, double above) {
+  int with_left = 0, with_right = 0;
+  for (std::size_t v = 0; v < drawn.vertex.size(); ++v) {
+    if (drawn.surface.vertex[v].z < above) continue;
+    const Vec3 by = drawn.vertex[v] - drawn.surface.vertex[v];
+    const bool is_left = norm(by - kToLeft) < 1e-9, is_right = norm(by - kToRight) < 1e-9;
+    EXPECT_TRUE(is_left || is_right) << drawn.surface.vertex[v].x << " " << drawn.surface.vertex[v].y;
+    with_left += is_left, with_right += is_right;
+  }
+  EXPECT_GT(with_left, 100);
+  EXPECT_GT(with_right, 100);
+}
+
 TEST(TornTissue, ABridgeWithoutElementsTears) {
   const Model model = testing::block_to_cut(8, 8, 4, 0.01);
   State state = rest_state(model);
   testing::cut_along(model, stroke(kLeft, kHole), state);
   testing::cut_along(model, stroke(kRight, kHoleEnd), state);
-  const Vec3 left{-0.02, 0, 0.01}, right{0.05, 0.01, 0};
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
-    state.position.add(i, model.rest_position[i].x < 0 ? left : right);
+    state.position.add(i, model.rest_position[i].x < 0 ? kToLeft : kToRight);
   const testing::DrawnCut drawn(model, state);
   EXPECT_EQ(drawn.pieces, 2);
   cutbody::CutGrid grid(model, 0);
@@ -41,15 +57,7 @@ TEST(TornTissue, ABridgeWithoutElementsTears) {
   const cutbody::CutMesh mesh = cutbody::make_mesh(grid);
   EXPECT_EQ(testing::open_edges(mesh.triangle), 0);
   EXPECT_EQ(testing::components(mesh.triangle), 2);
-  int with_left = 0, with_right = 0;
-  for (std::size_t v = 0; v < drawn.vertex.size(); ++v) {
-    const Vec3 by = drawn.vertex[v] - drawn.surface.vertex[v];
-    const bool is_left = norm(by - left) < 1e-9, is_right = norm(by - right) < 1e-9;
-    EXPECT_TRUE(is_left || is_right) << drawn.surface.vertex[v].x << " " << drawn.surface.vertex[v].y;
-    with_left += is_left, with_right += is_right;
-  }
-  EXPECT_GT(with_left, 100);
-  EXPECT_GT(with_right, 100);
+  expect_two_sides(drawn, -1);
 }
 
 TEST(TornTissue, ABridgeWithoutElementsTearsWhereTheTissueIsJoinedFarFromIt) {
@@ -59,21 +67,11 @@ TEST(TornTissue, ABridgeWithoutElementsTearsWhereTheTissueIsJoinedFarFromIt) {
   constexpr double kLow = 0.006, kHigh = 0.1, kTop = 0.06;
   testing::cut_along(model, stroke(kLeft, kHole, kLow, kHigh), state);
   testing::cut_along(model, stroke(kRight, kHoleEnd, kLow, kHigh), state);
-  const Vec3 left{-0.02, 0, 0.01}, right{0.05, 0.01, 0};
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
-    if (model.rest_position[i].z > kLow) state.position.add(i, model.rest_position[i].x < 0 ? left : right);
+    if (model.rest_position[i].z > kLow) state.position.add(i, model.rest_position[i].x < 0 ? kToLeft : kToRight);
   const testing::DrawnCut drawn(model, state);
   EXPECT_EQ(drawn.pieces, 1);
-  int with_left = 0, with_right = 0;
-  for (std::size_t v = 0; v < drawn.vertex.size(); ++v) {
-    if (drawn.surface.vertex[v].z < kTop) continue;
-    const Vec3 by = drawn.vertex[v] - drawn.surface.vertex[v];
-    const bool is_left = norm(by - left) < 1e-9, is_right = norm(by - right) < 1e-9;
-    EXPECT_TRUE(is_left || is_right) << drawn.surface.vertex[v].x << " " << drawn.surface.vertex[v].y;
-    with_left += is_left, with_right += is_right;
-  }
-  EXPECT_GT(with_left, 30);
-  EXPECT_GT(with_right, 30);
+  expect_two_sides(drawn, kTop);
 }
 
 TEST(TornTissue, SpheresThatACutGoesThroughStayOnOneSideOfIt) {
