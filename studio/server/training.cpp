@@ -150,8 +150,9 @@ void Training::tick() {
     options.threads = session::threads_for(start_->model);
     options.should_stop = should_stop;
     session::RecentTimes times;
+    Precedence precedence(start_->model.tick);
     options.watch = [&](const State& state, const recordings::TickRecord& record, const session::RunOutcome& so_far) {
-      times.add(record.tick_time);
+      times.add(record.tick_time), precedence.go_on();
       newest_.offer(state, record, so_far.late_ticks, times.p99());
     };
     options.tell = [this](const std::string& problem) { tell("train_fails", problem); };
