@@ -146,6 +146,7 @@ void Training::tick() {
   if (std::all_of(followed_.begin(), followed_.end(), [&](devices::DeviceSource* hand) {
         return hand->wait_for_first_pose(should_stop, [this](const std::string& why) { tell("train_waits", why); });
       })) {
+    const IdlePause pause;
     session::RunOptions options;
     options.threads = session::threads_for(start_->model);
     options.should_stop = should_stop;

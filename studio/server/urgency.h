@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+
 namespace ctpm::server {
 
 /// Whom a thread goes before, as the kernel's nice values have it. The browser draws on the same processors.
@@ -12,6 +14,20 @@ enum class Urgency {
 /// Gives the calling thread that urgency, and those that it makes. Only a privileged user may go before others; without
 /// that a thread stays as it was, but for ticks, which every user may let interrupt the slices of others.
 void become(Urgency urgency);
+
+/// While one lives, what may be of use later waits: a training runs.
+class IdlePause {
+ public:
+  IdlePause() { ++count_; }
+  ~IdlePause() { --count_; }
+  IdlePause(const IdlePause&) = delete;
+  IdlePause& operator=(const IdlePause&) = delete;
+
+  static bool is_on() { return count_ > 0; }
+
+ private:
+  static inline std::atomic<int> count_{0};
+};
 
 /// Lets a thread that does something over and over in real time go before everything else, as long as it leaves the
 /// processor free for a part of the time: it then interrupts even the browser's slices. Without the privilege it
