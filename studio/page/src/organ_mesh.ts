@@ -36,6 +36,11 @@ export class OrganMesh {
     this.mesh.frustumCulled = false;
   }
 
+  /** Whether positions are of its vertices. */
+  fits(position: Float32Array): boolean {
+    return position.length === this.position.length;
+  }
+
   update(position: Float32Array): void {
     this.position.set(position);
     this.computeNormals();
