@@ -1,5 +1,6 @@
 #include "studio/server/cuts_ahead.h"
 
+#include <chrono>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -36,6 +37,7 @@ class CutsAhead::Walk {
 
   /// Draws what is cut after the keyframe `first` and until `last`. False: it must end.
   bool draw_between(std::size_t first, std::size_t last, const State& at_first, const State& at_last) {
+    while (IdlePause::is_on() && !ahead_.ends_) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     if (ahead_.ends_) return false;
     if (first == last || CutKey(at_first).is_of(at_last)) return true;
     if (last - first == 1) return draw(at_last);

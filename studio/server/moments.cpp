@@ -3,8 +3,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
-#include <limits>
+#include <cstdlib>
 
 #include "studio/server/cut_key.h"
 #include "studio/server/urgency.h"
@@ -40,10 +41,7 @@ Result<std::unique_ptr<Moments>> Moments::open(const std::string& file) {
 }
 
 Moments::Moments(recordings::SessionReader reader, std::vector<std::int64_t> keyframes, std::optional<State> last)
-    : reader_(std::move(reader)),
-      keyframes_(std::move(keyframes)),
-      last_(std::move(last)),
-      is_done_(keyframes_.size()) {
+    : reader_(std::move(reader)), keyframes_(std::move(keyframes)), last_(std::move(last)), filled_(keyframes_) {
   const std::int64_t ticks = reader_.tick_count();
   const std::size_t state_bytes = bytes_of(reader_.start().initial_state);
   const double keyframes_bytes = double(keyframes_.size()) * double(state_bytes), memory = double(memory_for_states());
@@ -128,18 +126,29 @@ void Moments::keep(std::int64_t tick, const State& state, bool is_same) {
 
 double Moments::share() const {
   const std::lock_guard lock(mutex_);
-  return is_done_.empty() ? 1 : double(std::count(is_done_.begin(), is_done_.end(), true)) / double(is_done_.size());
+  std::int64_t filled = 0;
+  for (std::size_t i = 0; i < keyframes_.size(); ++i) filled += (is_done(i) ? end_of(i) : filled_[i]) - keyframes_[i];
+  return keyframes_.empty() ? 1 : double(filled) / double(std::max<std::int64_t>(1, reader_.tick_count()));
 }
 
-/// The nearest interval that is not done; their number if all are.
+/// Whether an interval has all of its States; mutex_ is locked.
+bool Moments::is_done(std::size_t interval) const {
+  return (filled_[interval] / spacing_ + 1) * spacing_ >= end_of(interval);
+}
+
+/// That of aim(), else of those with the longest way, to a power of two, the nearest one; the number of intervals if
+/// all are done.
 std::size_t Moments::next_interval() const {
   const std::int64_t aim = aim_;
   std::size_t best = keyframes_.size();
-  std::int64_t nearest = std::numeric_limits<std::int64_t>::max();
+  std::pair<int, std::int64_t> most{-1, 0};  // way, nearness
   const std::lock_guard lock(mutex_);
   for (std::size_t i = 0; i < keyframes_.size(); ++i) {
-    const std::int64_t middle = keyframes_[i] + 500, away = middle > aim ? middle - aim : aim - middle;
-    if (!is_done_[i] && away < nearest) best = i, nearest = away;
+    if (is_done(i)) continue;
+    const std::int64_t end = end_of(i), middle = keyframes_[i] + (end - keyframes_[i]) / 2;
+    if (keyframes_[i] <= aim && aim < end) return i;
+    const std::pair way{int(std::bit_width(std::uint64_t(end - filled_[i]))), -std::abs(middle - aim)};
+    if (way > most) most = way, best = i;
   }
   return best;
 }
@@ -148,39 +157,47 @@ std::int64_t Moments::end_of(std::size_t interval) const {
   return interval + 1 < keyframes_.size() ? keyframes_[interval + 1] : reader_.tick_count();
 }
 
-/// Replays one interval, from the last State that it has. False: another one is needed first, or nothing more.
-bool Moments::fill(recordings::ReplayCursor& cursor, std::size_t interval) {
+/// Whoever waits for a picture, or trains, has the processor for himself.
+void Moments::wait_while_replaying_rests() const {
+  while ((rest_ != Rest::none || IdlePause::is_on()) && !ends_)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+}
+
+/// Replays an interval from the last State that it has, until another one is needed first.
+void Moments::fill(recordings::ReplayCursor& cursor, std::size_t interval) {
   const std::int64_t end = end_of(interval);
+  const auto is_filled_to = [&](std::int64_t tick) {
+    const std::lock_guard lock(mutex_);
+    filled_[interval] = tick;
+  };
   const auto [from, kept] = before(std::max(keyframes_[interval], end - 1));
   if (kept)
     cursor.resume(from, with_sweep(*kept));
   else if (!cursor.seek(from))
-    return true;  // a damaged part has no moments
+    return is_filled_to(end);  // a damaged part has no moments
+  is_filled_to(from);
   const bool was_same = !kept || kept->is_same;
-  while (cursor.tick() < end) {
-    if (ends_) return false;
-    if (const Result<bool> went_on = cursor.step(); !went_on || !*went_on) break;
-    if (cursor.tick() % spacing_ != 0 || cursor.tick() >= end) continue;
+  while (next_interval() == interval) {
+    do {
+      wait_while_replaying_rests();
+      if (ends_) return;
+      if (const Result<bool> went_on = cursor.step(); !went_on || !*went_on) return is_filled_to(end);
+    } while (cursor.tick() % spacing_ != 0);
     keep(cursor.tick(), cursor.state(), was_same && cursor.same_so_far());
-    if (next_interval() != interval) return false;
+    is_filled_to(cursor.tick());
   }
-  return true;
 }
 
 void Moments::work() {
   // Whoever scrubs needs keyframes that are not in memory yet, so they are not read at low priority.
   for (std::size_t i = 0; i < keyframes_.size() && keeps_keyframes_ && !ends_; ++i) {
-    while (rests_ && !ends_) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    while (rest_ == Rest::all && !ends_) std::this_thread::sleep_for(std::chrono::milliseconds(2));
     if (const Place place = before(keyframes_[i]); !place.second) (void)read(place, reader_);
   }
   become(Urgency::idle);
   Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(reader_);
   if (!cursor) return;
-  for (std::size_t next; !ends_ && (next = next_interval()) < keyframes_.size();) {
-    if (!fill(*cursor, next)) continue;
-    const std::lock_guard lock(mutex_);
-    is_done_[next] = true;
-  }
+  for (std::size_t next; !ends_ && (next = next_interval()) < keyframes_.size();) fill(*cursor, next);
 }
 
 }  // namespace ctpm::server

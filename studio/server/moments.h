@@ -36,8 +36,9 @@ struct KeptState {
 };
 
 /// Keeps States of a session closer together than its keyframes are, so that a seek simulates at most spacing() ticks:
-/// reads the keyframes, replays the session in the background, at low priority, around aim() first, and takes what
-/// others simulated.
+/// reads the keyframes, replays the session in the background, at low priority, and takes what others simulated. Of the
+/// intervals between two keyframes that of aim() comes first. Then the longest ways are halved: the first half of each
+/// interval comes before the third quarter of any, and so on, around aim() first.
 class Moments {
  public:
   /// Errors: the session cannot be read.
@@ -63,8 +64,13 @@ class Moments {
   /// Moments near `tick` are needed first.
   void aim(std::int64_t tick) { aim_ = tick; }
 
-  /// Reads no keyframes ahead while somebody waits for a picture.
-  void rest(bool on) { rests_ = on; }
+  /// What waits in the background while somebody waits for a picture.
+  enum class Rest {
+    none,
+    replaying,  ///< the glimpse is there
+    all,
+  };
+  void rest(Rest rest) { rest_ = rest; }
 
   std::int64_t spacing() const { return spacing_; }  ///< [ticks]
   double share() const;                              ///< of the session that was replayed already, in [0, 1]
@@ -78,7 +84,9 @@ class Moments {
   void work();
   std::size_t next_interval() const;
   std::int64_t end_of(std::size_t interval) const;
-  bool fill(recordings::ReplayCursor& cursor, std::size_t interval);
+  bool is_done(std::size_t interval) const;
+  void wait_while_replaying_rests() const;
+  void fill(recordings::ReplayCursor& cursor, std::size_t interval);
   std::shared_ptr<const KeptState> without_sweep(State state, bool is_same) const;
   State with_sweep(const KeptState& kept) const;
 
@@ -90,9 +98,10 @@ class Moments {
   mutable std::mutex mutex_;
   std::vector<std::shared_ptr<const KeptState>> moments_;          ///< of tick i * spacing_
   std::vector<std::shared_ptr<const KeptState>> keyframe_states_;  ///< those that were read, of keyframes_
-  std::vector<bool> is_done_;                                      ///< each interval
+  std::vector<std::int64_t> filled_;                               ///< up to where each interval has its States [ticks]
   std::atomic<std::int64_t> aim_{0};
-  std::atomic<bool> ends_{false}, rests_{false};
+  std::atomic<bool> ends_{false};
+  std::atomic<Rest> rest_{Rest::none};
   std::thread thread_;
 };
 

@@ -3,6 +3,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
+#include <utility>
 
 #include "studio/output/option_name.h"
 #include "studio/server/http_connection.h"
@@ -89,6 +90,7 @@ struct Server::Impl {
 
   void look(const std::function<bool()>& should_stop) {
     if (should_stop()) return end();
+    if (!std::exchange(services.is_led, false)) services.leading.give_up();
     timer.expires_after(std::chrono::milliseconds(100));
     timer.async_wait([this, &should_stop](boost::system::error_code failure) {
       if (!failure) look(should_stop);

@@ -50,7 +50,7 @@ void Stage::show(std::int64_t tick, std::uint32_t request) {
     is_wanted_ = true;
     wants_glimpse_ = is_replaying_;  // else the replay says whether it needs one
   }
-  moments_->aim(tick), moments_->rest(true);
+  moments_->aim(tick), moments_->rest(Moments::Rest::all);
   news_.notify_all();
 }
 
@@ -139,7 +139,7 @@ void Stage::show(Picture picture, const Wish& wish, bool is_glimpse) {
   if (wish.request != newest_.request || (is_glimpse && !is_replaying_)) return;
   if (!is_glimpse) is_replaying_ = wants_glimpse_ = false;
   outbox_->show(std::move(picture));
-  moments_->rest(false);
+  moments_->rest(is_glimpse ? Moments::Rest::replaying : Moments::Rest::none);
 }
 
 /// The replay would only hold up the glimpse, and begins where that read from the file already.
@@ -159,7 +159,7 @@ void Stage::replay() {
   while (const std::optional<Wish> wish = next(is_wanted_)) {
     if (seeker.is_far(wish->tick)) wait_for_glimpse(*wish);
     const Result<bool> there = seeker.go_to(wish->tick, [this] { return is_outdated(); });
-    if (!there) outbox_->send(stage_failed(number_, there.errors())), moments_->rest(false);
+    if (!there) outbox_->send(stage_failed(number_, there.errors())), moments_->rest(Moments::Rest::none);
     if (!there || !*there) continue;
     const State& state = seeker.cursor().state();
     Picture picture = maker.make(state, facts(seeker, wish->request));

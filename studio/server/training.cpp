@@ -146,12 +146,14 @@ void Training::tick() {
   if (std::all_of(followed_.begin(), followed_.end(), [&](devices::DeviceSource* hand) {
         return hand->wait_for_first_pose(should_stop, [this](const std::string& why) { tell("train_waits", why); });
       })) {
+    const IdlePause pause;
     session::RunOptions options;
     options.threads = session::threads_for(start_->model);
     options.should_stop = should_stop;
     session::RecentTimes times;
+    Precedence precedence(start_->model.tick);
     options.watch = [&](const State& state, const recordings::TickRecord& record, const session::RunOutcome& so_far) {
-      times.add(record.tick_time);
+      times.add(record.tick_time), precedence.go_on();
       newest_.offer(state, record, so_far.late_ticks, times.p99());
     };
     options.tell = [this](const std::string& problem) { tell("train_fails", problem); };

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <sys/resource.h>
-#include <unistd.h>
+#include <atomic>
 
 namespace ctpm::server {
 
@@ -13,7 +12,42 @@ enum class Urgency {
 };
 
 /// Gives the calling thread that urgency, and those that it makes. Only a privileged user may go before others; without
-/// that a thread stays as it was.
-inline void become(Urgency urgency) { setpriority(PRIO_PROCESS, id_t(gettid()), int(urgency)); }
+/// that a thread stays as it was, but for ticks, which every user may let interrupt the slices of others.
+void become(Urgency urgency);
+
+/// While one lives, what may be of use later waits: a training runs.
+class IdlePause {
+ public:
+  IdlePause() { ++count_; }
+  ~IdlePause() { --count_; }
+  IdlePause(const IdlePause&) = delete;
+  IdlePause& operator=(const IdlePause&) = delete;
+
+  static bool is_on() { return count_ > 0; }
+
+ private:
+  static inline std::atomic<int> count_{0};
+};
+
+/// Lets a thread that does something over and over in real time go before everything else, as long as it leaves the
+/// processor free for a part of the time: it then interrupts even the browser's slices. Without the privilege it
+/// changes nothing. Used by that thread alone.
+class Precedence {
+ public:
+  /// `interval`: from one time to the next [s].
+  explicit Precedence(double interval) : interval_(interval) {}
+
+  /// After each time.
+  void go_on();
+
+  /// It is not needed any more.
+  void give_up();
+
+ private:
+  double interval_;
+  double judged_at_ = 0;  ///< the thread's time on a processor [s]
+  int count_ = 0;         ///< of times since then
+  bool is_first_ = false;
+};
 
 }  // namespace ctpm::server

@@ -74,6 +74,7 @@ void WebClient::take(const std::string& text) {
     const double time_s = hand->number("time_s", 1e-9, 1e12);
     if (std::optional<Parameters> second = hand->object_if("second")) moves[1] = move_of(*second);
     if (message->errors().empty()) desk_->move(moves, time_s);
+    services_.leading.go_on(), services_.is_led = true;
   } else if (const std::optional<double> id = message->number_if("cancel", 0, 9e15)) {
     if (const auto it = calls_.find(std::int64_t(*id)); it != calls_.end()) *it->second = true;
   } else {

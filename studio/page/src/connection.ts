@@ -2,6 +2,15 @@ import { CallFailed, type Drawing, type Problem, readBinary, type Shapes, type S
 
 export type Binary = Triangles | WaitingFrame | Shapes | Spheres | Drawing;
 
+interface TextMessage {
+  id?: number;
+  result?: unknown;
+  errors?: Problem[];
+  progress?: { done: number; total: number };
+  event?: string;
+  content?: unknown;
+}
+
 interface Running {
   done(result: unknown): void;
   failed(error: Error): void;
@@ -20,6 +29,7 @@ export class Connection {
   private readonly stages = new Map<number, (message: Binary) => void>();
   private readonly events = new Map<string, (content: unknown) => void>();
   private next = 1;
+  onUnreadable: (problem: string) => void = () => {}; // a message that was left out
 
   constructor(private readonly token: string, onOpen: () => void, onClose: () => void) {
     this.socket = new WebSocket(`${location.protocol.replace("http", "ws")}//${location.host}/socket`, ["ctpm.studio.1", `token.${token}`]);
@@ -76,20 +86,23 @@ export class Connection {
     });
   }
 
-  private take(data: string | ArrayBuffer): void {
-    if (typeof data !== "string") {
-      const message = readBinary(data);
-      this.stages.get(message.stage)?.(message);
-      return;
+  /** A message; null: it cannot be read. */
+  private read(data: string | ArrayBuffer): Binary | TextMessage | null {
+    try {
+      if (typeof data !== "string") return readBinary(data);
+      const message: unknown = JSON.parse(data);
+      if (typeof message !== "object" || message === null || "kind" in message) throw new RangeError("a text that is no message");
+      return message as TextMessage;
+    } catch (problem) {
+      this.onUnreadable((problem as Error).message);
+      return null;
     }
-    const message = JSON.parse(data) as {
-      id?: number;
-      result?: unknown;
-      errors?: Problem[];
-      progress?: { done: number; total: number };
-      event?: string;
-      content?: unknown;
-    };
+  }
+
+  private take(data: string | ArrayBuffer): void {
+    const message = this.read(data);
+    if (!message) return;
+    if ("kind" in message) return this.stages.get(message.stage)?.(message);
     if (message.event !== undefined) return this.events.get(message.event)?.(message.content);
     const call = message.id === undefined ? undefined : this.calls.get(message.id);
     if (!call || message.id === undefined) return;

@@ -25,7 +25,7 @@ const kAskAgain = 2000; // whether the program is back [ms]
 
 function App() {
   const [connection, setConnection] = useState<Connection | null>(null);
-  const [isClosed, setClosed] = useState(false);
+  const [isClosed, setClosed] = useState(false), [unreadable, setUnreadable] = useState("");
   const [listing, setListing] = useState<Listing | null>(null);
   const [room, setRoom] = useState<Room>(start.room);
 
@@ -42,6 +42,7 @@ function App() {
         setClosed(true);
         timer = setTimeout(connect, kAskAgain);
       });
+      made.onUnreadable = setUnreadable;
       newest = made;
     };
     connect();
@@ -70,6 +71,13 @@ function App() {
         </nav>
         <span class="folder" title="The folder that the studio was started in">{listing?.folder ?? ""}</span>
       </header>
+      {unreadable && (
+        <div class="unreadable" role="alert">
+          <p>The program sent something that this page cannot read, and it was left out: {unreadable}. If it was updated while this page was open, load the page again.</p>
+          <button type="button" onClick={() => location.reload()}>Load again</button>
+          <button type="button" class="quiet" onClick={() => setUnreadable("")}>Close</button>
+        </div>
+      )}
       <main>
         {isClosed ? (
           <Empty title={connection ? "The studio has ended" : "This address is of another run"}>

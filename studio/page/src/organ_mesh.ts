@@ -9,6 +9,7 @@ function linear(c: number): number {
 /** The moving surface of one organ, with the walls of its cuts. */
 export class OrganMesh {
   readonly mesh: three.Mesh;
+  private readonly materials: three.MeshPhongMaterial[]; // of the outside, and of the walls of cuts
   private readonly position: Float32Array;
   private readonly normal: Float32Array;
   private readonly index: Uint32Array;
@@ -24,11 +25,20 @@ export class OrganMesh {
     geometry.setAttribute("normal", new three.BufferAttribute(this.normal, 3));
     geometry.setAttribute("color", new three.BufferAttribute(new Float32Array(3 * triangles.vertexCount), 3));
     const shine = 0.04 + 0.09 * look.wetness;
-    const material = new three.MeshPhongMaterial({
-      vertexColors: true, shininess: 34, specular: new three.Color(shine, shine, shine), side: three.DoubleSide,
-    });
-    this.mesh = new three.Mesh(geometry, material);
+    const material = (side: three.Side) =>
+      new three.MeshPhongMaterial({ vertexColors: true, shininess: 34, specular: new three.Color(shine, shine, shine), side });
+    // As in videos, what faces away is seen of the walls of cuts alone.
+    const outer = 3 * triangles.outerTriangleCount;
+    geometry.addGroup(0, outer, 0);
+    if (outer < this.index.length) geometry.addGroup(outer, this.index.length - outer, 1);
+    this.materials = [material(three.FrontSide), material(three.DoubleSide)];
+    this.mesh = new three.Mesh(geometry, this.materials);
     this.mesh.frustumCulled = false;
+  }
+
+  /** Whether positions are of its vertices. */
+  fits(position: Float32Array): boolean {
+    return position.length === this.position.length;
   }
 
   update(position: Float32Array): void {
@@ -44,12 +54,14 @@ export class OrganMesh {
 
   /** 0: not drawn, 1: not transparent. */
   setOpacity(opacity: number): void {
-    const material = this.mesh.material as three.MeshPhongMaterial;
     this.mesh.visible = opacity > 0;
-    material.opacity = opacity;
-    material.transparent = opacity < 1;
-    material.depthWrite = opacity === 1;
-    material.needsUpdate = true;
+    for (const material of this.materials) {
+      material.opacity = opacity;
+      material.transparent = opacity < 1;
+      material.depthWrite = opacity === 1;
+      material.needsUpdate = true;
+    }
+    this.materials[0].side = opacity < 1 ? three.DoubleSide : three.FrontSide;
   }
 
   /** Where a ray meets the surface first, seen or not. */
@@ -64,7 +76,7 @@ export class OrganMesh {
 
   dispose(): void {
     this.mesh.geometry.dispose();
-    (this.mesh.material as three.Material).dispose();
+    for (const material of this.materials) material.dispose();
   }
 
   /** Normals of the vertices: the sum over their triangles, weighted by area. */

@@ -263,30 +263,44 @@ class Reader {
     this.view = new DataView(bytes);
   }
   u32(): number {
-    return this.view.getUint32((this.at += 4) - 4, true);
+    return this.view.getUint32(this.take(4), true);
   }
   i32(): number {
-    return this.view.getInt32((this.at += 4) - 4, true);
+    return this.view.getInt32(this.take(4), true);
   }
   f32(): number {
-    return this.view.getFloat32((this.at += 4) - 4, true);
+    return this.view.getFloat32(this.take(4), true);
   }
   f64(): number {
-    return this.view.getFloat64((this.at += 8) - 8, true);
+    return this.view.getFloat64(this.take(8), true);
   }
   vector(): Vector {
     return [this.f32(), this.f32(), this.f32()];
   }
   // Typed arrays read the machine's own byte order, which is little-endian wherever browsers run.
   array<T>(make: new (buffer: ArrayBuffer, at: number, count: number) => T, size: number, count: number): T {
-    if (this.at + size * count > this.bytes.byteLength) throw new RangeError("a message is shorter than it says");
-    const values = new make(this.bytes, this.at, count);
-    this.at += size * count;
-    return values;
+    return new make(this.bytes, this.take(size * count), count);
   }
   pad(): void {
-    this.at += (4 - (this.at % 4)) % 4;
+    this.take((4 - (this.at % 4)) % 4);
   }
+  /** Goes over so many bytes; returns where they begin. */
+  take(bytes: number): number {
+    const from = this.at;
+    if (from + bytes > this.bytes.byteLength) throw new RangeError("a message is shorter than it says");
+    this.at += bytes;
+    return from;
+  }
+  /** Whether something follows. */
+  get hasMore(): boolean {
+    return this.at < this.bytes.byteLength;
+  }
+}
+
+function indices(r: Reader, count: number, vertexCount: number): Uint32Array {
+  const index = r.array(Uint32Array, 4, count);
+  for (const v of index) if (v >= vertexCount) throw new RangeError("a triangle names a vertex that is not there");
+  return index;
 }
 
 function readTriangles(r: Reader): Triangles {
@@ -294,8 +308,8 @@ function readTriangles(r: Reader): Triangles {
   const organs: OrganTriangles[] = [];
   for (let i = 0; i < count; ++i) {
     const vertexCount = r.u32(), outerVertexCount = r.u32(), triangleCount = r.u32(), outerTriangleCount = r.u32();
-    const index = r.array(Uint32Array, 4, 3 * triangleCount);
-    for (const v of index) if (v >= vertexCount) throw new RangeError("a triangle names a vertex that is not there");
+    if (outerVertexCount > vertexCount || outerTriangleCount > triangleCount) throw new RangeError("more is outside than there is");
+    const index = indices(r, 3 * triangleCount, vertexCount);
     const stain = r.array(Uint8Array, 1, vertexCount), lip = r.array(Uint8Array, 1, vertexCount);
     r.pad();
     organs.push({ vertexCount, outerVertexCount, outerTriangleCount, index, stain, lip });
@@ -326,7 +340,7 @@ function readFrame(r: Reader): Frame {
     organs.push(position);
   }
   let second: HandFrame | null = null;
-  if (r.at < r.bytes.byteLength) {
+  if (r.hasMore) {
     const of = readPose();
     second = { ...of, force: r.vector(), depth: r.f32(), contacts: r.i32(), hand: r.vector() };
   }
@@ -341,8 +355,8 @@ function readShapeList(r: Reader): ToolShape[] {
   const count = r.u32();
   const shapes: ToolShape[] = [];
   for (let i = 0; i < count; ++i) {
-    const vertices = r.u32(), indices = r.u32();
-    shapes.push({ vertex: r.array(Float32Array, 4, 7 * vertices), index: r.array(Uint32Array, 4, indices) });
+    const vertices = r.u32(), indexCount = r.u32();
+    shapes.push({ vertex: r.array(Float32Array, 4, 7 * vertices), index: indices(r, indexCount, vertices) });
   }
   return shapes;
 }
@@ -369,6 +383,19 @@ export interface WaitingFrame {
   stage: number;
   request: number;
   bytes: ArrayBuffer;
+}
+
+const kFrameHead = 124, kSecondHand = 64; // [bytes]
+
+/** The head of a frame that is whole. */
+function readHead(r: Reader): WaitingFrame {
+  const stage = r.u32();
+  r.take(8);
+  const request = r.u32();
+  r.take(kFrameHead - r.at);
+  for (let organs = r.u32(); organs > 0; --organs) r.take(24 + 6 * r.u32()), r.pad();
+  if (r.hasMore) r.take(kSecondHand);
+  return { kind: "waiting", stage, request, bytes: r.bytes };
 }
 
 export function readWaitingFrame(message: WaitingFrame): Frame {
@@ -405,14 +432,19 @@ function readDrawing(r: Reader): Drawing {
   return { kind: "drawing", stage, request, width, height, rgb: r.array(Uint8Array, 1, 3 * width * height) };
 }
 
-/** Reads a binary message; of a frame its head alone. Throws a RangeError for one that is not whole. */
-export function readBinary(bytes: ArrayBuffer): Triangles | WaitingFrame | Shapes | Spheres | Drawing {
-  const reader = new Reader(bytes);
-  const kind = reader.u32();
-  if (kind === 1) return readTriangles(reader);
-  if (kind === 2) return { kind: "waiting", stage: reader.u32(), request: (reader.at = 16, reader.u32()), bytes };
-  if (kind === 3) return readShapes(reader);
-  if (kind === 4) return readSpheres(reader);
-  if (kind === 5) return readDrawing(reader);
+function readKind(kind: number, r: Reader): Triangles | WaitingFrame | Shapes | Spheres | Drawing {
+  if (kind === 1) return readTriangles(r);
+  if (kind === 2) return readHead(r);
+  if (kind === 3) return readShapes(r);
+  if (kind === 4) return readSpheres(r);
+  if (kind === 5) return readDrawing(r);
   throw new RangeError(`unknown kind of message ${kind}`);
+}
+
+/** Reads a binary message; of a frame its head alone. Throws a RangeError for one that is not as PROTOCOL.md has it. */
+export function readBinary(bytes: ArrayBuffer): Triangles | WaitingFrame | Shapes | Spheres | Drawing {
+  const reader = new Reader(bytes), message = readKind(reader.u32(), reader);
+  reader.pad();
+  if (reader.hasMore) throw new RangeError("a message is longer than it says");
+  return message;
 }

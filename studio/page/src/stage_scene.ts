@@ -98,7 +98,7 @@ export class StageScene {
 
   private useTriangles(triangles: Triangles): void {
     for (const organ of this.organs) this.scene.remove(organ.mesh), organ.dispose();
-    this.organs = triangles.organs.map((organ, i) => new OrganMesh(organ, this.view.organs[i]));
+    this.organs = triangles.organs.slice(0, this.view.organs.length).map((organ, i) => new OrganMesh(organ, this.view.organs[i]));
     for (const organ of this.organs) this.scene.add(organ.mesh);
     this.topology = triangles.topology;
     this.next = null;
@@ -116,7 +116,7 @@ export class StageScene {
     const frame = readWaitingFrame(this.waiting);
     this.waiting = null;
     if (frame.topology === this.next?.topology) this.useTriangles(this.next);
-    if (frame.topology !== this.topology) return false; // of triangles that are not here
+    if (frame.topology !== this.topology || !frame.organs.every((positions, i) => this.organs[i]?.fits(positions))) return false; // of triangles that are not here
     this.frame = frame;
     frame.organs.forEach((positions, i) => this.organs[i]?.update(positions));
     this.tools.forEach((tool, i) => {

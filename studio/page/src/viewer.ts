@@ -1,5 +1,6 @@
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { PictureQuality } from "./picture_quality";
 import type { CameraView, SceneView, Vector } from "./protocol";
 import type { StageScene } from "./stage_scene";
 
@@ -22,6 +23,7 @@ export function firstCamera(view: SceneView): CameraView | undefined {
 }
 
 const kLookAgain = 2; // whether a picture is done [ms]
+const kStandsStill = 400; // a picture, if no other one follows for that long [ms]
 
 /** What keys do to a view: right and up [rad], times as far away. */
 export const kTurns: { [key: string]: [number, number, number] } = {
@@ -45,9 +47,11 @@ export class Viewer {
   private isWanted = false;
   private isBusy = false; // with the picture before
   private isTurning = false;
+  private readonly quality = new PictureQuality();
+  private still: ReturnType<typeof setTimeout> | undefined; // until the picture counts as one that stands still
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    this.renderer = new three.WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer = new three.WebGLRenderer({ canvas, antialias: this.quality.smoothsEdges, alpha: true });
     this.renderer.setClearColor(0x000000, 0); // the page's ground shows
     this.renderer.setScissorTest(true);
     this.renderer.autoClear = false;
@@ -115,6 +119,7 @@ export class Viewer {
   /** Draws with the next frame of the screen after the picture before is done: pictures that pile up in the browser
       would keep it from the pointer. */
   draw(): void {
+    clearTimeout(this.still);
     if (this.isWanted) return;
     this.isWanted = true;
     if (!this.isBusy) this.drawNext();
@@ -122,13 +127,26 @@ export class Viewer {
 
   private drawNext(): void {
     requestAnimationFrame(() => {
+      const began = performance.now();
       this.isWanted = false;
-      this.drawNow();
-      this.awaitPicture();
+      this.drawNow(false);
+      this.awaitPicture(() => {
+        this.quality.add(performance.now() - began);
+        if (this.isWanted) this.drawNext();
+        else if (this.quality.isReduced) this.still = setTimeout(() => this.drawStill(), kStandsStill);
+      });
     });
   }
 
-  private awaitPicture(): void {
+  /** The same picture, as fine as it can be. */
+  private drawStill(): void {
+    this.drawNow(true);
+    this.awaitPicture(() => {
+      if (this.isWanted) this.drawNext();
+    });
+  }
+
+  private awaitPicture(done: () => void): void {
     const gl = this.renderer.getContext() as WebGL2RenderingContext;
     const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     if (!sync) return;
@@ -138,16 +156,16 @@ export class Viewer {
       if (!gl.isContextLost() && gl.clientWaitSync(sync, 0, 0) === gl.TIMEOUT_EXPIRED) return void setTimeout(look, kLookAgain);
       gl.deleteSync(sync);
       this.isBusy = false;
-      if (this.isWanted) this.drawNext();
+      done();
     };
     setTimeout(look, kLookAgain);
   }
 
-  private drawNow(): void {
+  private drawNow(isStill: boolean): void {
     const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
     if (width === 0 || height === 0) return;
     for (const stage of this.stages.values()) stage.takeFrame();
-    const ratio = Math.min(devicePixelRatio, 2);
+    const ratio = this.quality.ratio(isStill);
     if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
     const size = this.renderer.getSize(new three.Vector2());
     if (size.x !== width || size.y !== height) this.renderer.setSize(width, height, false);
@@ -177,6 +195,7 @@ export class Viewer {
   }
 
   dispose(): void {
+    clearTimeout(this.still);
     this.observer.disconnect();
     this.controls.dispose();
     for (const stage of this.stages.values()) stage.dispose();

@@ -18,6 +18,18 @@ before(async () => {
   [expert, clumsy] = [kExpert, kClumsy].map((name) => JSON.parse(ctpm(folder, "info", name, "--json").out));
   studio = await openStudio(folder);
   page = studio.page;
+  // Keeps what the program sends, for the test that spoils it.
+  await page.addInitScript(() => {
+    globalThis.came = {};
+    globalThis.WebSocket = class extends WebSocket {
+      constructor(...of) {
+        super(...of);
+        globalThis.socket = this;
+        this.addEventListener("message", ({ data }) => data instanceof ArrayBuffer && data.byteLength >= 4 && (globalThis.came[new Uint32Array(data, 0, 1)[0]] ??= data.slice(0)));
+      }
+    };
+  });
+  await page.reload();
   await page.click("header nav button:has-text('Review')");
 });
 
@@ -392,6 +404,77 @@ test("it fits a desk, a large screen and a tablet", async () => {
     await picture(page, `review-${width}x${height}`);
   }
   assert.deepEqual(await seriousFindings(page), []);
+});
+
+test("what cannot be read is left out and said, and the page goes on", async () => {
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await page.click(".list button:has-text('kidney-cut-expert')");
+  await page.waitForSelector(".uplot");
+  await page.click("#tab-moment");
+  await quiet();
+  // Each: the kind of message, and what is done to it.
+  const spoilt = {
+    "empty": [2, () => new ArrayBuffer(0)],
+    "of an unknown kind": [2, (m) => (m.u32[0] = 9)],
+    "cut off": [2, (m) => m.bytes.slice(0, m.bytes.byteLength - 8)],
+    "longer than it says": [2, (m) => Uint8Array.from([...new Uint8Array(m.bytes), 0, 0, 0, 0]).buffer],
+    "of more organs than follow": [2, (m) => (m.u32[31] = 4e9)],
+    "of more vertices than follow": [2, (m) => (m.u32[32] = 4e9)],
+    "of a triangle without vertices": [1, (m) => (m.u32[8] = m.u32[4])],
+    "of more triangles than follow": [1, (m) => (m.u32[6] = 4e9)],
+    "of a tool's vertices that do not follow": [3, (m) => (m.u32[3] = 4e9)],
+  };
+  const comes = (bytes) => page.evaluate((bytes) => void globalThis.socket.dispatchEvent(new MessageEvent("message", { data: Uint8Array.from(bytes).buffer })), bytes);
+  const alert = page.locator(".unreadable");
+  const severedAt = async (share) => {
+    const plots = await page.locator(".plots").boundingBox();
+    await page.mouse.click(plots.x + 64 + share * (plots.width - 78), plots.y + 20);
+    await replayedQuiet();
+    return reading(page, "severed");
+  };
+  assert.ok((await severedAt(0.2)) < (await severedAt(0.8)));
+  for (const [how, [kind, spoil]] of Object.entries(spoilt)) {
+    const bytes = Uint8Array.from(await page.evaluate((kind) => [...new Uint8Array(globalThis.came[kind])], kind)).buffer;
+    assert.ok(bytes.byteLength > 100, how);
+    const made = spoil({ bytes, u32: new Uint32Array(bytes) });
+    await comes([...new Uint8Array(made instanceof ArrayBuffer ? made : bytes)]);
+    await alert.waitFor();
+    assert.match(await alert.innerText(), /cannot read/, how);
+    if (kind === 3) await picture(page, "review-unreadable");
+    await alert.locator("button.quiet").click();
+    await alert.waitFor({ state: "detached" });
+  }
+  // A frame of other triangles than those that are here: nothing to say, as the right ones follow.
+  await page.evaluate(() => {
+    const data = globalThis.came[2].slice(0);
+    new Uint32Array(data)[2] = 4e9;
+    globalThis.socket.dispatchEvent(new MessageEvent("message", { data }));
+    globalThis.socket.dispatchEvent(new MessageEvent("message", { data: "no JSON" }));
+  });
+  await alert.waitFor();
+  assert.deepEqual(await seriousFindings(page), []);
+  await alert.locator("button.quiet").click();
+  const early = await severedAt(0.2);
+  assert.ok(early < (await severedAt(0.8)), "it still shows any moment");
+});
+
+test("a picture that stands still is finer than one that moves", async () => {
+  const finer = (by) => page.waitForFunction((by) => {
+    const canvas = document.querySelector(".view > canvas");
+    return Math.abs(canvas.width / canvas.clientWidth - by) < 0.01;
+  }, by);
+  await finer(2); // the browser of these tests draws with the processor
+  const moved = await page.evaluate(async () => {
+    const canvas = document.querySelector(".view > canvas");
+    canvas.focus();
+    canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "a", bubbles: true }));
+    for (;;) {
+      await new Promise(requestAnimationFrame);
+      if (canvas.width <= canvas.clientWidth) return true;
+    }
+  });
+  assert.ok(moved);
+  await finer(2);
 });
 
 test("nothing was complained about", () => assert.deepEqual(studio.complaints, []));

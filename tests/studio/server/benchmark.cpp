@@ -82,7 +82,9 @@ int review(const std::string& folder, const std::string& session, double wait_s)
   client.call("session.open", {{"path", session}, {"stage", 1}});
   print_seeks("seeks in two sessions beside each other", seek(client, 2, ticks, 60, 2));
   std::this_thread::sleep_for(std::chrono::duration<double>(wait_s));
-  print_seeks("seeks, " + std::to_string(int(wait_s)) + " s later", seek(client, 1, ticks, 60, 3));
+  const std::string later = ", " + std::to_string(int(wait_s)) + " s later";
+  print_seeks("seeks" + later, seek(client, 1, ticks, 60, 3));
+  print_seeks("seeks in both" + later, seek(client, 2, ticks, 60, 4));
   return 0;
 }
 

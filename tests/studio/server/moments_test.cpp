@@ -10,6 +10,7 @@
 #include "studio/server/cuts_ahead.h"
 #include "studio/server/glimpse.h"
 #include "studio/server/moments.h"
+#include "studio/server/urgency.h"
 
 namespace ctpm::server {
 namespace {
@@ -43,6 +44,55 @@ TEST(Moments, WhatIsKeptIsWhatTheReplayHasWithItsSweptSurface) {
     shared += place.second->shared_points > 0;
   }
   EXPECT_GT(shared, 1u);
+}
+
+/// How far `moments` is from a kept State at the end of an interval that begins at `keyframe` [ticks].
+std::int64_t longest_way(const Moments& moments, std::int64_t keyframe, std::int64_t end) {
+  return end - std::max(keyframe, moments.before(end - 1).first);
+}
+
+TEST(Moments, TheLongestWaysAreHalvedFirstAndWhatIsFilledIsWhatAReplayFromTheKeyframeHas) {
+  auto moments = Moments::open(kCut);
+  ASSERT_TRUE(moments);
+  auto reader = recordings::SessionReader::open(kCut);
+  std::vector<std::int64_t> ends = *reader->keyframe_ticks();
+  ends.push_back(reader->tick_count());
+  ASSERT_GT(ends.size(), 5u);
+  // The interval of aim() is whole by then, and half of each other one.
+  wait_until([&] { return (*moments)->share() > 0.75; });
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i)
+    EXPECT_LE(longest_way(**moments, ends[i], ends[i + 1]), i == 0 ? Moments::kSpacing : 512) << "interval " << i;
+  wait_until([&] { return (*moments)->share() >= 1; });
+  auto cursor = recordings::ReplayCursor::create(*reader);
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    ASSERT_TRUE(cursor->seek(ends[i]));
+    for (std::int64_t tick = ends[i] + Moments::kSpacing; tick < ends[i + 1]; tick += Moments::kSpacing) {
+      while (cursor->tick() < tick) ASSERT_TRUE(cursor->step());
+      const Moments::Place place = (*moments)->before(tick);
+      ASSERT_EQ(place.first, tick);
+      ASSERT_TRUE(place.second);
+      const Result<Moment> moment = (*moments)->read(place, *reader);
+      ASSERT_TRUE(moment);
+      EXPECT_TRUE(moment->is_same);
+      ASSERT_EQ(recordings::state_hash(moment->state), recordings::state_hash(cursor->state())) << "tick " << tick;
+    }
+  }
+}
+
+TEST(Moments, NothingIsReplayedAheadWhileATrainingRunsOrSomebodyWaits) {
+  auto pause = std::make_unique<IdlePause>();
+  auto moments = Moments::open(kCut);
+  ASSERT_TRUE(moments);
+  const auto stays = [&](double share) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    return (*moments)->share() == share;
+  };
+  EXPECT_TRUE(stays(0));
+  (*moments)->rest(Moments::Rest::replaying);
+  pause.reset();
+  EXPECT_TRUE(stays(0));
+  (*moments)->rest(Moments::Rest::none);
+  wait_until([&] { return (*moments)->share() > 0; });
 }
 
 TEST(CutsAhead, EveryKeyframesCutIsDrawnAndAGlimpseHasTheLargestPartOfItsOwn) {

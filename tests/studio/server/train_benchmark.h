@@ -8,7 +8,7 @@ namespace ctpm {
 /// page that leads, and with four further pages that ask it 60 times a second, all of which read, or one of which
 /// stops. Each round runs all of them, in changing order, so that what else the machine does meets each of them alike.
 /// Prints the share of late ticks, the ticks' own times and how long poses waited for their tick, and for each the
-/// difference to the page that leads alone with its 95 % interval. Returns the exit code.
+/// difference to the page that leads alone, its mean and its median, with 95 % intervals. Returns the exit code.
 int benchmark_training(const std::string& folder, const std::string& scene, int rounds);
 
 }  // namespace ctpm

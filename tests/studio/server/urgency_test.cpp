@@ -1,0 +1,53 @@
+// Threads that go before others.
+
+#include "studio/server/urgency.h"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+
+#include <ctime>
+#include <thread>
+
+namespace ctpm::server {
+namespace {
+
+constexpr double kInterval = 1e-4;  // [s]
+constexpr int kEnough = 250;        // times until it was judged twice
+
+bool may_go_first() {
+  sched_param parameters{};
+  parameters.sched_priority = 1;
+  bool may = false;
+  std::thread([&] { may = sched_setscheduler(0, SCHED_FIFO, &parameters) == 0; }).join();
+  return may;
+}
+
+/// Uses the processor for `share` of each interval.
+void go_on(Precedence& precedence, double share) {
+  for (int i = 0; i < kEnough; ++i) {
+    const std::clock_t busy = std::clock_t(share * kInterval * CLOCKS_PER_SEC);
+    for (const std::clock_t end = std::clock() + busy; std::clock() < end;) {
+    }
+    precedence.go_on();
+  }
+}
+
+TEST(Urgency, AThreadGoesFirstWhileItLeavesTheProcessorFreeForOthers) {
+  if (!may_go_first()) GTEST_SKIP() << "this user may not schedule in real time";
+  std::thread([] {
+    become(Urgency::tick);
+    Precedence precedence(kInterval);
+    EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER) << "before anything is known";
+    go_on(precedence, 0.1);
+    EXPECT_EQ(sched_getscheduler(0), SCHED_FIFO);
+    go_on(precedence, 3);
+    EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER) << "it cannot keep up";
+    go_on(precedence, 0.1);
+    EXPECT_EQ(sched_getscheduler(0), SCHED_FIFO) << "again";
+    precedence.give_up();
+    EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER);
+  }).join();
+}
+
+}  // namespace
+}  // namespace ctpm::server
