@@ -4,11 +4,11 @@ extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 #include <libavutil/opt.h>
+#include <libswscale/swscale.h>
 }
 
+#include <cstdint>
 #include <utility>
-
-#include "studio/video/yuv.h"
 
 namespace ctpm::video {
 namespace {
@@ -22,6 +22,7 @@ struct Deleter {
   void operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
   void operator()(AVFrame* p) const { av_frame_free(&p); }
   void operator()(AVPacket* p) const { av_packet_free(&p); }
+  void operator()(SwsContext* p) const { sws_freeContext(p); }
   void operator()(AVFormatContext* p) const {
     avio_closep(&p->pb);
     avformat_free_context(p);
@@ -38,6 +39,7 @@ struct H264File::Parts {
   Owned<AVCodecContext> encoder;
   Owned<AVFrame> picture;
   Owned<AVPacket> packet;
+  Owned<SwsContext> to_yuv;
 
   bool open_encoder(int width, int height, double fps);
   bool open_file();
@@ -69,7 +71,12 @@ bool H264File::Parts::open_encoder(int width, int height, double fps) {
 
   picture.reset(av_frame_alloc()), packet.reset(av_packet_alloc());
   picture->width = width, picture->height = height, picture->format = c.pix_fmt;
-  return av_frame_get_buffer(picture.get(), 0) >= 0;
+  if (av_frame_get_buffer(picture.get(), 0) < 0) return false;
+  to_yuv.reset(
+      sws_getContext(width, height, AV_PIX_FMT_RGB24, width, height, c.pix_fmt, SWS_AREA, nullptr, nullptr, nullptr));
+  const int* const bt709 = sws_getCoefficients(SWS_CS_ITU709);
+  constexpr int kAsItIs = 1 << 16;  // contrast and saturation
+  return to_yuv && sws_setColorspaceDetails(to_yuv.get(), bt709, 1, bt709, 0, 0, kAsItIs, kAsItIs) >= 0;
 }
 
 bool H264File::Parts::open_file() {
@@ -117,8 +124,9 @@ Result<Done> H264File::add(const render::Frame& frame) {
   Parts& p = *parts_;
   // The encoder may still look at the last frame's buffer.
   if (const int code = av_frame_make_writable(p.picture.get()); code < 0) return p.problem(code);
-  const AVFrame& to = *p.picture;
-  to_yuv(frame, {{to.data[0], to.data[1], to.data[2]}, {to.linesize[0], to.linesize[1], to.linesize[2]}});
+  const std::uint8_t* const from[] = {frame.rgb.data()};
+  const int row[] = {3 * frame.width};
+  sws_scale(p.to_yuv.get(), from, row, 0, frame.height, p.picture->data, p.picture->linesize);
   p.picture->pts = p.picture->pts == AV_NOPTS_VALUE ? 0 : p.picture->pts + 1;
   return p.encode(p.picture.get());
 }
