@@ -238,6 +238,7 @@ void CutGrid::sever_row(const State& state, std::size_t row) {
     if (newly[n] != 0 || (n > 0 && newly[n - 1] != 0))
       is_outside[n] = depth_.at(organ, from[n]) <= 0 && depth_.at(organ, to[n]) <= 0;
   const bool may_move = row + 1 == cutting::swept_rows(state);
+  torn_tissue_.sever(from, to, newly, may_move);
   for (const bool outside : {false, true}) {
     for (std::size_t n = 0; n + 1 < kEdgeNodes; ++n) {
       if (newly[n] == 0) continue;
@@ -341,6 +342,7 @@ void CutGrid::join(std::size_t e) {
 }
 
 void CutGrid::take_back_last_row() {
+  torn_tissue_.take_back();
   if (last_box_.low[0] <= last_box_.high[0]) box_.add(last_box_.low), box_.add(last_box_.high);
   last_box_ = {extent_, {-1, -1, -1}};
   for (const std::size_t e : outside_by_last_) outside_.erase(e), box_.add(node(Index(e / kDirections)));
@@ -365,7 +367,7 @@ void CutGrid::reset() {
   changed_ = changed_ || anything_cut_;
   for (const auto& [e, cut] : cuts_)
     if (!outer_.contains(e)) parted_[e / kDirections] &= std::uint8_t(~(1 << int(e % kDirections)));
-  cuts_.clear(), by_last_.clear(), outside_.clear(), outside_by_last_.clear(), torn_.clear();
+  cuts_.clear(), by_last_.clear(), outside_.clear(), outside_by_last_.clear(), torn_.clear(), torn_tissue_.reset();
   anything_cut_ = false, rows_ = 0;
 }
 

@@ -20,20 +20,36 @@ bool is_whole(const CutGrid& grid, Index node, int direction) {
 
 TornTissue::TornTissue(const Model& model, std::size_t organ, const cutting::TissueDepth& depth)
     : model_(model), organ_(organ), elements_(model, depth, organ), pieces_(model) {
-  pieces_.find({});
+  pieces_.find(network_);
   whole_ = pieces_.piece();
+  network_.axial_severed.assign(model.axial.size(), 0);
+}
+
+void TornTissue::sever(const cutting::Front& from, const cutting::Front& to, const cutting::NewlySwept& newly,
+                       bool may_move) {
+  cutting::find_severed(model_, elements_, organ_, from, to, newly, network_.axial_severed,
+                        may_move ? by_last_ : severed_);
+}
+
+void TornTissue::take_back() {
+  for (const cutting::Crossing& crossing : by_last_) network_.axial_severed[std::size_t(crossing.element)] = 0;
+  by_last_.clear();
+}
+
+void TornTissue::reset() {
+  take_back();
+  by_last_.swap(severed_), take_back();
 }
 
 /// Marks the blocks of a grid around the spheres that lost an element: elsewhere nothing can tear.
-std::vector<std::uint8_t> TornTissue::blocks_at_cut(const CutGrid& grid, const State& state) const {
+std::vector<std::uint8_t> TornTissue::blocks_at_cut(const CutGrid& grid) const {
   std::vector<std::uint8_t> blocks(std::size_t(grid.block_count()), 0);
-  const OrganRange& organ = model_.organs[organ_];
-  for (std::size_t e = 0; e < state.axial_severed.size(); ++e) {
-    if (state.axial_severed[e] == 0) continue;
-    for (const Index sphere : {model_.axial.a[e] - organ.first, model_.axial.b[e] - organ.first})
-      if (const Index home = sphere >= 0 && sphere < organ.count ? grid.home_of_sphere(sphere) : -1; home >= 0)
-        blocks[std::size_t(grid.block(home))] = 1;
-  }
+  for (const auto* crossings : {&severed_, &by_last_})
+    for (const cutting::Crossing& crossing : *crossings)
+      for (const Index sphere :
+           {model_.axial.a[std::size_t(crossing.element)], model_.axial.b[std::size_t(crossing.element)]})
+        if (const Index home = grid.home_of_sphere(sphere - model_.organs[organ_].first); home >= 0)
+          blocks[std::size_t(grid.block(home))] = 1;
   return grid.widened(blocks);
 }
 
@@ -84,7 +100,7 @@ std::vector<Index> TornTissue::nearest_spheres(const CutGrid& grid, const State&
 }
 
 /// Whether a way over at most so many elements, or whole ones only, leads from one sphere to another of the organ.
-bool TornTissue::is_joined(const State& state, Index from, Index to, int most, bool by_whole) {
+bool TornTissue::is_joined(Index from, Index to, int most, bool by_whole) {
   const Index first = model_.organs[organ_].first;
   reached_in_.resize(std::size_t(model_.organs[organ_].count), 0), ++search_;
   std::vector<Index> front{from}, next;
@@ -93,7 +109,7 @@ bool TornTissue::is_joined(const State& state, Index from, Index to, int most, b
     for (const Index sphere : front)
       for (const Index element : elements_.of(std::size_t(first + sphere))) {
         const auto e = std::size_t(element);
-        if (by_whole && state.axial_severed[e] != 0) continue;
+        if (by_whole && network_.axial_severed[e] != 0) continue;
         const Index other = model_.axial.a[e] + model_.axial.b[e] - (first + sphere) - first;
         if (other == to) return true;
         if (std::exchange(reached_in_[std::size_t(other)], search_) != search_) next.push_back(other);
@@ -103,20 +119,20 @@ bool TornTissue::is_joined(const State& state, Index from, Index to, int most, b
 
 /// Whether elements held two spheres together that now are far from each other, or apart, in the network. What it never
 /// held together is held by the tissue alone. Around the end of a cut there is a short way.
-bool TornTissue::came_apart(const State& state, Index p, Index q) {
+bool TornTissue::came_apart(Index p, Index q) {
   constexpr int kNear = 2, kFar = 4;  // elements
   if (p < 0 || q < 0 || p == q) return false;
   const auto [known, is_new] = apart_.try_emplace({std::min(p, q), std::max(p, q)}, false);
   if (!is_new) return known->second;
   const auto first = std::size_t(model_.organs[organ_].first), i = first + std::size_t(p), j = first + std::size_t(q);
   const bool is_loose = whole_[i] == whole_[j] && pieces_.piece()[i] != pieces_.piece()[j];
-  return known->second = is_loose || (!is_joined(state, p, q, kFar, true) && is_joined(state, p, q, kNear, false));
+  return known->second = is_loose || (!is_joined(p, q, kFar, true) && is_joined(p, q, kNear, false));
 }
 
 TornTissue::Tear TornTissue::find(const CutGrid& grid, const State& state) {
-  if (std::find(state.axial_severed.begin(), state.axial_severed.end(), 1) == state.axial_severed.end()) return {};
-  pieces_.find(state), apart_.clear();
-  const std::vector<std::uint8_t> blocks = blocks_at_cut(grid, state);
+  if (severed_.empty() && by_last_.empty()) return {};
+  pieces_.find(network_), apart_.clear();
+  const std::vector<std::uint8_t> blocks = blocks_at_cut(grid);
   const std::vector<Index> nearest = nearest_spheres(grid, state, blocks);
   Tear tear;
   for (Index i = 0; i < grid.count(); ++i) {
@@ -126,14 +142,14 @@ TornTissue::Tear TornTissue::find(const CutGrid& grid, const State& state) {
       if (!grid.contains({n[0] + (d & 1), n[1] + (d >> 1 & 1), n[2] + (d >> 2)})) continue;
       const Index end = grid.end(i, d);
       if (nearest[std::size_t(i)] != nearest[std::size_t(end)] && is_whole(grid, i, d) &&
-          came_apart(state, nearest[std::size_t(i)], nearest[std::size_t(end)]))
+          came_apart(nearest[std::size_t(i)], nearest[std::size_t(end)]))
         tear.edge.push_back({i, d});
     }
   }
   const OrganRange& organ = model_.organs[organ_];
   for (Index s = 0; s < organ.count; ++s)
     if (const Index home = grid.home_of_sphere(s); home >= 0 && !grid.is_inside(s))
-      if (came_apart(state, s, nearest[std::size_t(home)])) tear.stray.push_back(s);
+      if (came_apart(s, nearest[std::size_t(home)])) tear.stray.push_back(s);
   return tear;
 }
 

@@ -19,7 +19,8 @@ class CutGrid;
 
 /// Where tissue comes apart because nothing holds it: cuts may sever every element between neighbouring spheres and yet
 /// leave a bridge of tissue in which no element runs. It tears in the middle between them, unless they are still joined
-/// by a short way around it.
+/// by a short way around it. The severed
+/// elements are those that the rows of the swept surface cross, so that the tear is a function of them alone.
 class TornTissue {
  public:
   struct Edge {
@@ -31,27 +32,34 @@ class TornTissue {
   /// `model` must outlive the TornTissue.
   TornTissue(const Model& model, std::size_t organ, const cutting::TissueDepth& depth);
 
+  /// Severs the elements that a row crosses. What a row crosses that may still move is taken back by take_back().
+  void sever(const cutting::Front& from, const cutting::Front& to, const cutting::NewlySwept& newly, bool may_move);
+  void take_back();
+  void reset();
+
   struct Tear {
     std::vector<Edge> edge;  ///< of the grid, in whole tissue, across which it is torn; ascending
     /// Spheres outside the tissue of which the nearest tissue belongs to another piece than they do, counted within the
     /// organ: they carry none.
     std::vector<std::int32_t> stray;
   };
-  /// `state`: of the swept surface and of the elements that it severed.
+  /// `state`: of the swept surface.
   Tear find(const CutGrid& grid, const State& state);
 
  private:
-  std::vector<std::uint8_t> blocks_at_cut(const CutGrid& grid, const State& state) const;
+  std::vector<std::uint8_t> blocks_at_cut(const CutGrid& grid) const;
   std::vector<std::int32_t> nearest_spheres(const CutGrid& grid, const State& state,
                                             const std::vector<std::uint8_t>& blocks) const;
-  bool is_joined(const State& state, std::int32_t from, std::int32_t to, int most, bool by_whole);
-  bool came_apart(const State& state, std::int32_t p, std::int32_t q);
+  bool is_joined(std::int32_t from, std::int32_t to, int most, bool by_whole);
+  bool came_apart(std::int32_t p, std::int32_t q);
 
   const Model& model_;
   std::size_t organ_;
   cutting::RestElements elements_;
+  State network_;  ///< only the severed elements
   cutting::Pieces pieces_;
   std::vector<std::int32_t> whole_;  ///< the first sphere of the piece of each sphere before any cut (sphere_count)
+  std::vector<cutting::Crossing> severed_, by_last_;
   std::map<std::pair<std::int32_t, std::int32_t>, bool> apart_;  ///< pairs of spheres that were asked for
   std::vector<std::uint32_t> reached_in_;                        ///< the last search that reached each sphere
   std::uint32_t search_ = 0;
