@@ -74,6 +74,20 @@ TEST(TornTissue, ABridgeWithoutElementsTearsWhereTheTissueIsJoinedFarFromIt) {
   expect_two_sides(drawn, kTop);
 }
 
+TEST(TornTissue, IsAFunctionOfTheSweptSurfaceAlone) {
+  // What is touched is made of the swept surface, without the elements that a State holds as severed.
+  const Model model = testing::block_to_cut(8, 8, 4, 0.01);
+  State state = rest_state(model), swept;
+  testing::cut_along(model, stroke(kLeft, kHole), state);
+  testing::cut_along(model, stroke(kRight, kHoleEnd), state);
+  swept.swept = state.swept, swept.swept_organ = state.swept_organ;
+  cutbody::CutBody of_state(model, 0), of_swept(model, 0);
+  (void)of_state.update(state), (void)of_swept.update(swept);
+  EXPECT_EQ(of_swept.piece_count(), 2);
+  EXPECT_EQ(of_swept.surface().triangle, of_state.surface().triangle);
+  EXPECT_EQ(of_swept.surface().binding.weight, of_state.surface().binding.weight);
+}
+
 TEST(TornTissue, SpheresThatACutGoesThroughStayOnOneSideOfIt) {
   const Model model = testing::block_to_cut(7, 8, 4, 0.01);
   for (const bool is_forth : {true, false}) {
