@@ -168,15 +168,8 @@ CutGrid::Index CutGrid::find_home(Index sphere) const {
       if (!in_tissue(to)) return;
       if (best < 0 || std::pair(squared_distance(to), to) < std::pair(squared_distance(best), best)) best = to;
     };
-    for (const Index from : front) {
-      const Node n = node(from);
-      for (int d = 1; d < kDirections; ++d) {
-        const Node up{n[0] + (d & 1), n[1] + (d >> 1 & 1), n[2] + (d >> 2)},
-            down{n[0] - (d & 1), n[1] - (d >> 1 & 1), n[2] - (d >> 2)};
-        if (contains(up)) go(at(up), edge(from, d));
-        if (contains(down)) go(at(down), edge(at(down), d));
-      }
-    }
+    for (const Index from : front)
+      for_each_edge(from, [&](Index to, Index lower, int direction) { go(to, edge(lower, direction)); });
     if (best >= 0) return best;
     front = std::move(next);
   }

@@ -56,6 +56,18 @@ class CutGrid {
   Index end(Index node, int direction) const {
     return node + (direction & 1) + extent_[0] * ((direction >> 1 & 1) + extent_[1] * (direction >> 2));
   }
+  /// Calls `visit(to, lower, direction)` for each edge from a node to another of the grid, which belongs to its lower
+  /// node.
+  template <class Visit>
+  void for_each_edge(Index from, Visit&& visit) const {
+    const Node n = node(from);
+    for (int d = 1; d < kDirections; ++d) {
+      const Node up{n[0] + (d & 1), n[1] + (d >> 1 & 1), n[2] + (d >> 2)},
+          down{n[0] - (d & 1), n[1] - (d >> 1 & 1), n[2] - (d >> 2)};
+      if (contains(up)) visit(at(up), from, d);
+      if (contains(down)) visit(at(down), at(down), d);
+    }
+  }
   /// Whether the surface of the organ or of the cut crosses an edge, or tissue is torn across it.
   bool is_parted(Index node, int direction) const { return (parted_[std::size_t(node)] >> direction & 1) != 0; }
   bool is_torn(Index node, int direction) const { return torn_.contains(edge(node, direction)); }

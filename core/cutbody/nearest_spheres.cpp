@@ -13,22 +13,13 @@ void NearestSpheres::find() {
     near_[std::size_t(node)] = {s, 0}, front.push_back(node);
   }
   for (Index hops = 1; hops <= kMostHops; ++hops, front.swap(next), next.clear())
-    for (const Index from : front) {
-      const CutGrid::Node n = grid_.node(from);
-      const auto go = [&](CutGrid::Node to, CutGrid::Node lower, int direction) {
-        if (!grid_.contains(to) || !grid_.contains(lower)) return;
-        const Index i = grid_.at(to);
-        Near& near = near_[std::size_t(i)];
-        if (near.sphere >= 0 || !grid_.in_tissue(i) || blocks[std::size_t(grid_.block(i))] == 0) return;
-        if (grid_.is_parted(grid_.at(lower), direction)) return;
-        near = {near_[std::size_t(from)].sphere, hops}, next.push_back(i);
-      };
-      for (int d = 1; d < CutGrid::kDirections; ++d) {
-        const CutGrid::Node up{n[0] + (d & 1), n[1] + (d >> 1 & 1), n[2] + (d >> 2)},
-            down{n[0] - (d & 1), n[1] - (d >> 1 & 1), n[2] - (d >> 2)};
-        go(up, n, d), go(down, down, d);
-      }
-    }
+    for (const Index from : front)
+      grid_.for_each_edge(from, [&](Index to, Index lower, int direction) {
+        Near& near = near_[std::size_t(to)];
+        if (near.sphere >= 0 || !grid_.in_tissue(to) || blocks[std::size_t(grid_.block(to))] == 0) return;
+        if (grid_.is_parted(lower, direction)) return;
+        near = {near_[std::size_t(from)].sphere, hops}, next.push_back(to);
+      });
 }
 
 }  // namespace ctpm::cutbody

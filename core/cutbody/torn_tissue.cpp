@@ -81,21 +81,12 @@ std::vector<Index> TornTissue::nearest_spheres(const CutGrid& grid, const State&
     of_node[std::size_t(node)] = s, front.push_back(node);
   }
   for (; !front.empty(); front.swap(next), next.clear())
-    for (const Index from : front) {
-      const CutGrid::Node n = grid.node(from);
-      const auto go = [&](CutGrid::Node to, Index lower, int direction) {
-        const Index i = grid.at(to);
-        if (!grid.in_tissue(i) || of_node[std::size_t(i)] >= 0 || !is_around(i) || !is_whole(grid, lower, direction))
-          return;
-        of_node[std::size_t(i)] = of_node[std::size_t(from)], next.push_back(i);
-      };
-      for (int d = 1; d < CutGrid::kDirections; ++d) {
-        const CutGrid::Node up{n[0] + (d & 1), n[1] + (d >> 1 & 1), n[2] + (d >> 2)},
-            down{n[0] - (d & 1), n[1] - (d >> 1 & 1), n[2] - (d >> 2)};
-        if (grid.contains(up)) go(up, from, d);
-        if (grid.contains(down)) go(down, grid.at(down), d);
-      }
-    }
+    for (const Index from : front)
+      grid.for_each_edge(from, [&](Index to, Index lower, int direction) {
+        Index& sphere = of_node[std::size_t(to)];
+        if (sphere >= 0 || !grid.in_tissue(to) || !is_around(to) || !is_whole(grid, lower, direction)) return;
+        sphere = of_node[std::size_t(from)], next.push_back(to);
+      });
   return of_node;
 }
 
