@@ -16,6 +16,38 @@ bool is_whole(const CutGrid& grid, Index node, int direction) {
   return !grid.is_parted(node, direction) || grid.is_torn(node, direction);
 }
 
+/// The spheres that carry the nodes of a grid, as far as they are asked for.
+class Carried {
+ public:
+  Carried(const CutGrid& grid, std::vector<std::uint8_t> blocks)
+      : by(std::size_t(grid.count()), -1), grid_(grid), blocks_(std::move(blocks)) {}
+
+  bool is_asked_for(Index node) const { return node >= 0 && blocks_[std::size_t(grid_.block(node))] != 0; }
+
+  /// Lets a sphere carry a node that none carries.
+  void begin_at(Index node, Index sphere) {
+    if (node >= 0 && by[std::size_t(node)] < 0) by[std::size_t(node)] = sphere, front_.push_back(node);
+  }
+
+  /// Goes on from all nodes over the edges of whole tissue, one after the other from each.
+  void spread() {
+    for (std::vector<Index> next; !front_.empty(); front_.swap(next), next.clear())
+      for (const Index from : front_)
+        grid_.for_each_edge(from, [&](Index to, Index lower, int direction) {
+          Index& sphere = by[std::size_t(to)];
+          if (sphere >= 0 || !grid_.in_tissue(to) || !is_asked_for(to) || !is_whole(grid_, lower, direction)) return;
+          sphere = by[std::size_t(from)], next.push_back(to);
+        });
+  }
+
+  std::vector<Index> by;  ///< of each node; -1: none
+
+ private:
+  const CutGrid& grid_;
+  const std::vector<std::uint8_t> blocks_;
+  std::vector<Index> front_;
+};
+
 }  // namespace
 
 TornTissue::TornTissue(const Model& model, std::size_t organ, const cutting::TissueDepth& depth)
@@ -70,28 +102,26 @@ std::vector<Index> TornTissue::nearest_spheres(const CutGrid& grid, const State&
     return nearest;
   };
   const OrganRange& organ = model_.organs[organ_];
-  const std::vector<std::uint8_t> around = grid.widened(blocks);
-  const auto is_around = [&](Index node) { return around[std::size_t(grid.block(node))] != 0; };
-  std::vector<Index> of_node(std::size_t(grid.count()), -1), front, next;
-  for (Index s = 0; s < organ.count; ++s) {
-    const Index home = grid.home_of_sphere(s);
-    if (home < 0 || !is_around(home)) continue;
-    const Index node = grid.is_inside(s) ? home : node_at(elements_.place(std::size_t(organ.first + s)));
-    if (node < 0 || of_node[std::size_t(node)] >= 0) continue;
-    of_node[std::size_t(node)] = s, front.push_back(node);
-  }
-  for (; !front.empty(); front.swap(next), next.clear())
-    for (const Index from : front)
-      grid.for_each_edge(from, [&](Index to, Index lower, int direction) {
-        Index& sphere = of_node[std::size_t(to)];
-        if (sphere >= 0 || !grid.in_tissue(to) || !is_around(to) || !is_whole(grid, lower, direction)) return;
-        sphere = of_node[std::size_t(from)], next.push_back(to);
-      });
-  return of_node;
+  Carried carried(grid, grid.widened(blocks));
+  std::vector<Index> outside;
+  for (Index s = 0; s < organ.count; ++s)
+    if (const Index home = grid.home_of_sphere(s); carried.is_asked_for(home))
+      grid.is_inside(s) ? carried.begin_at(home, s) : outside.push_back(s);
+  for (const Index s : outside) carried.begin_at(node_at(elements_.place(std::size_t(organ.first + s))), s);
+  carried.spread();
+  // Tissue in which no sphere has its place goes with the one outside that is nearest.
+  const auto off = [&](Index s) {
+    return norm(model_.rest_position[std::size_t(organ.first + s)] - grid.rest(grid.home_of_sphere(s)));
+  };
+  std::stable_sort(outside.begin(), outside.end(), [&](Index a, Index b) { return off(a) < off(b); });
+  for (const Index s : outside) carried.begin_at(grid.home_of_sphere(s), s);
+  carried.spread();
+  return std::move(carried.by);
 }
 
-/// Whether a way over at most so many elements, or whole ones only, leads from one sphere to another of the organ.
-bool TornTissue::is_joined(Index from, Index to, int most, bool by_whole) {
+/// Over how many elements, or whole ones only, the shortest way leads from one sphere to another of the organ; none
+/// over at most so many.
+std::optional<int> TornTissue::elements_between(Index from, Index to, int most, bool by_whole) {
   const Index first = model_.organs[organ_].first;
   reached_in_.resize(std::size_t(model_.organs[organ_].count), 0), ++search_;
   std::vector<Index> front{from}, next;
@@ -102,22 +132,24 @@ bool TornTissue::is_joined(Index from, Index to, int most, bool by_whole) {
         const auto e = std::size_t(element);
         if (by_whole && network_.axial_severed[e] != 0) continue;
         const Index other = model_.axial.a[e] + model_.axial.b[e] - (first + sphere) - first;
-        if (other == to) return true;
+        if (other == to) return hops + 1;
         if (std::exchange(reached_in_[std::size_t(other)], search_) != search_) next.push_back(other);
       }
-  return false;
+  return std::nullopt;
 }
 
 /// Whether elements held two spheres together that now are far from each other, or apart, in the network. What it never
 /// held together is held by the tissue alone. Around the end of a cut there is a short way.
 bool TornTissue::came_apart(Index p, Index q) {
-  constexpr int kNear = 2, kFar = 4;  // elements
+  constexpr int kNear = 6, kFar = 4, kLonger = 2;  // elements
   if (p < 0 || q < 0 || p == q) return false;
   const auto [known, is_new] = apart_.try_emplace({std::min(p, q), std::max(p, q)}, false);
   if (!is_new) return known->second;
   const auto first = std::size_t(model_.organs[organ_].first), i = first + std::size_t(p), j = first + std::size_t(q);
   const bool is_loose = whole_[i] == whole_[j] && pieces_.piece()[i] != pieces_.piece()[j];
-  return known->second = is_loose || (!is_joined(p, q, kFar, true) && is_joined(p, q, kNear, false));
+  if (is_loose) return known->second = true;
+  const std::optional<int> uncut = elements_between(p, q, kNear, false);
+  return known->second = uncut && !elements_between(p, q, std::max(kFar, *uncut + kLonger), true);
 }
 
 TornTissue::Tear TornTissue::find(const CutGrid& grid, const State& state) {

@@ -3,6 +3,7 @@
 #include <compare>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -50,7 +51,7 @@ class TornTissue {
   std::vector<std::uint8_t> blocks_at_cut(const CutGrid& grid) const;
   std::vector<std::int32_t> nearest_spheres(const CutGrid& grid, const State& state,
                                             const std::vector<std::uint8_t>& blocks) const;
-  bool is_joined(std::int32_t from, std::int32_t to, int most, bool by_whole);
+  std::optional<int> elements_between(std::int32_t from, std::int32_t to, int most, bool by_whole);
   bool came_apart(std::int32_t p, std::int32_t q);
 
   const Model& model_;

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
+#include <random>
 #include <vector>
 
 #include "core/cutbody/cut_grid.h"
@@ -28,6 +30,27 @@ constexpr double kHole = 0.0015, kHoleEnd = 0.0058;
 
 /// How the spheres of both sides move [m].
 const Vec3 kToLeft{-0.02, 0, 0.01}, kToRight{0.05, 0.01, 0};
+
+/// The pieces that a swept surface leaves of the network, of each sphere.
+std::vector<std::int32_t> pieces_of_rows(const Model& model, const State& swept) {
+  const cutting::RestMap map(model);
+  const cutting::TissueDepth depth(model, map);
+  const cutting::RestElements elements(model, depth);
+  State state = rest_state(model);
+  std::vector<cutting::Crossing> crossings;
+  for (std::size_t row = 1; row < cutting::swept_rows(swept); ++row) {
+    cutting::Front from, to;
+    cutting::NewlySwept newly;
+    for (std::size_t n = 0; n < kEdgeNodes; ++n) {
+      const std::size_t at = row * kEdgeNodes + n;
+      from[n] = swept.swept[at - kEdgeNodes], to[n] = swept.swept[at], newly[n] = swept.swept_organ[at];
+    }
+    (void)cutting::sever_swept(model, elements, from, to, newly, state, crossings);
+  }
+  cutting::Pieces pieces(model);
+  (void)pieces.find(state);
+  return pieces.piece();
+}
 
 /// Every vertex above a height moves with one side or the other.
 void expect_two_sides(const testing::DrawnCut& drawn, double above) {
@@ -102,6 +125,46 @@ TEST(TornTissue, SpheresThatACutGoesThroughStayOnOneSideOfIt) {
     cutting::Pieces pieces(model);
     EXPECT_EQ(pieces.find(state), 2);
     EXPECT_EQ(testing::DrawnCut(model, state).pieces, 2);
+  }
+}
+
+TEST(TornTissue, NoTissueIsCarriedByTwoPieces) {
+  // As lattices are, this one is a little larger than its organ: small tissue may have spheres outside only.
+  FilledOrgan organ = testing::make_block(6, 6, 5);
+  testing::add_faces(organ, 0.003);
+  Vec3 middle;
+  for (const Vec3& centre : organ.centre) middle += centre / double(organ.centre.size());
+  for (Vec3& vertex : organ.surface.vertex) vertex = middle + 0.88 * (vertex - middle);
+  surface::bind_surface(organ);
+  network::OrganSettings settings;
+  settings.name = "block", settings.material = testing::liver_material();
+  Model model;
+  ASSERT_TRUE(bool(network::add_organ(model, organ, settings)));
+  model.tools = {testing::scalpel(0.1)};
+  std::mt19937 random(5);
+  const auto between = [&](double low, double high) { return low + (high - low) * double(random()) / 4294967296.0; };
+  for (int trial = 0; trial < 25; ++trial) {
+    State state = rest_state(model);
+    for (int stroke = 0; stroke < 8; ++stroke) {
+      const double angle = between(0, 6.28), off = between(-0.025, 0.025);
+      const Vec3 way{std::cos(angle), std::sin(angle), 0}, tilt{between(-3, 3), between(-3, 3), 1};
+      testing::cut_along(
+          model,
+          [=](double t) {
+            const Vec3 at = middle + Vec3{-off * way.y, off * way.x, 0} + (0.12 * t - 0.06) * way;
+            return testing::straight_front(at - 0.06 * tilt, at + 0.06 * tilt);
+          },
+          state);
+    }
+    const std::vector<std::int32_t> pieces = pieces_of_rows(model, state);
+    cutbody::CutGrid grid(model, 0);
+    (void)grid.update(state);
+    std::map<std::int32_t, std::int32_t> piece;  // of the spheres of each node
+    for (std::int32_t s = 0; s < grid.sphere_count(); ++s) {
+      const std::int32_t node = grid.node_of_sphere(s), own = pieces[std::size_t(s)];
+      if (node < 0) continue;
+      EXPECT_EQ(piece.try_emplace(node, own).first->second, own) << "sphere " << s << " in trial " << trial;
+    }
   }
 }
 
