@@ -202,6 +202,11 @@ inline constexpr GoldenRow kGoldenRevision13[] = {
     {"touched plane, sdirk2", {0x37af568419ef2339, 0x882b573d001dd94a, 0xfdae0beae8e33f6e, 0x03b1369b1a02ea3a}},
 };
 
+inline constexpr GoldenRow kGoldenRevision14[] = {
+    {"touched bridge, auto", {0xc651e673aaed1229, 0x2daa381a3a772e97, 0x55a434ce6cd9ae8f, 0xeb95b0247a1b2a67}},
+    {"touched bridge, sdirk2", {0xfc009c869aa9e49a, 0x8a72951a4f43bfe3, 0x3e5275d9e47932d0, 0x55ae7290f7725767}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},   {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189},   {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
@@ -209,7 +214,7 @@ inline constexpr GoldenRevision kGoldenRevisions[] = {
     {7, kGoldenRevision7, 0xe9b636c6028e3176},   {8, kGoldenRevision8, 0x7b7d2031be004e94},
     {9, kGoldenRevision9, 0xb75cb37d4faeb3c5},   {10, kGoldenRevision10, 0x6d5ddd69b485de71},
     {11, kGoldenRevision11, 0x4162fa4fa1d24cae}, {12, kGoldenRevision12, 0x1a990242ddda6fc4},
-    {13, kGoldenRevision13, 0xa5637b24229bb1f2},
+    {13, kGoldenRevision13, 0xa5637b24229bb1f2}, {14, kGoldenRevision14, 0x0c9c41c835d51364},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

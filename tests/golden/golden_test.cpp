@@ -77,6 +77,8 @@ constexpr BlockSession kSkinnedSessions[] = {
     {"soft and touched slice, auto", true, std::nullopt, 1, testing::touched_slice_inputs},
     {"touched tear, auto", false, std::nullopt, 1, testing::touched_tear_inputs},
     {"touched tear, sdirk2", false, Integrator::sdirk2, 1, testing::touched_tear_inputs},
+    {"touched bridge, auto", false, std::nullopt, 1, testing::touched_bridge_inputs},
+    {"touched bridge, sdirk2", false, Integrator::sdirk2, 1, testing::touched_bridge_inputs},
     {"touched plane, auto", false, std::nullopt, 1, testing::touched_plane_inputs},
     {"touched plane, sdirk2", false, Integrator::sdirk2, 1, testing::touched_plane_inputs},
     {"touched edge, auto", false, std::nullopt, 1, testing::touched_edge_inputs},

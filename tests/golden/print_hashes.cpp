@@ -36,6 +36,8 @@ constexpr Session kSessions[] = {
     {"touched cut", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 1, testing::touched_cut_inputs},
     {"touched tear", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 1,
      testing::touched_tear_inputs},
+    {"touched bridge", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 1,
+     testing::touched_bridge_inputs},
     {"touched plane", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 1,
      testing::touched_plane_inputs},
     {"touched edge", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 1,

@@ -49,6 +49,13 @@ inline Inputs touched_tear_inputs(int tick) {
   return inputs;
 }
 
+/// The same, and the ball presses on that bridge.
+inline Inputs touched_bridge_inputs(int tick) {
+  Inputs inputs = touched_tear_inputs(tick);
+  if (tick >= 200) inputs.position.x = 0.0255, inputs.position.y = 0.0022;
+  return inputs;
+}
+
 /// A scalpel cuts the block along the middles of spheres for 200 ticks, then a ball presses into the cut.
 inline Inputs touched_plane_inputs(int tick) {
   Inputs inputs = touched_cut_inputs(tick);
