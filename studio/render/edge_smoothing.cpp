@@ -17,12 +17,8 @@ constexpr float kReach = 8;         // longest search along an edge [pixels]
 
 int luma_of(const std::uint8_t* p) { return (77 * p[0] + 150 * p[1] + 29 * p[2] + kBackdropLuma * (255 - p[3])) >> 8; }
 
-/// Brightness of every pixel. Reads whole words through plain pointers, so that the compiler vectorises the loop.
-void find_luma(const std::vector<std::uint8_t>& rgba, std::vector<std::uint8_t>& luma) {
-  const std::size_t count = rgba.size() / 4;
-  luma.resize(count);
-  const std::uint8_t* from = rgba.data();
-  std::uint8_t* to = luma.data();
+/// Brightness of a run of pixels. Reads whole words through plain pointers, so that the compiler vectorises the loop.
+void find_luma(const std::uint8_t* from, std::uint8_t* to, std::size_t count) {
   run_wide([=]() CTPM_WIDE_LOOP {
     for (std::size_t i = 0; i < count; ++i) {
       std::uint32_t word;
@@ -90,20 +86,29 @@ std::array<std::uint8_t, 4> along_edge(const std::vector<std::uint8_t>& rgba, co
 
 }  // namespace
 
-void EdgeSmoother::smooth(std::vector<std::uint8_t>& rgba, int width, int height) {
+void EdgeSmoother::smooth(std::vector<std::uint8_t>& rgba, int width, int height, parallel::Team& team) {
   if (width < 3 || height < 3) return;
-  find_luma(rgba, luma_);
-  is_edge_.assign(std::size_t(width), 0);
-  smoothed_.clear();
-  for (int y = 1; y + 1 < height; ++y) {
-    const std::uint8_t* row = luma_.data() + std::ptrdiff_t(y) * width;
-    find_edges(row, width, is_edge_.data());
-    for (int x = next_edge(is_edge_, 1, width - 1); x < width - 1; x = next_edge(is_edge_, x + 1, width - 1))
-      smoothed_.push_back(
-          {std::size_t(y) * std::size_t(width) + std::size_t(x), along_edge(rgba, row + x, width, height, x, y)});
-  }
+  luma_.resize(rgba.size() / 4);
+  const auto row_of = [&](int band) { return height * band / kBands; };
+  team.for_each(kBands, [&](int band) {
+    const auto begin = std::size_t(row_of(band)) * std::size_t(width),
+               end = std::size_t(row_of(band + 1)) * std::size_t(width);
+    find_luma(rgba.data() + 4 * begin, luma_.data() + begin, end - begin);
+  });
+  team.for_each(kBands, [&](int band) {
+    auto& [is_edge, smoothed] = bands_[std::size_t(band)];
+    is_edge.assign(std::size_t(width), 0), smoothed.clear();
+    for (int y = std::max(1, row_of(band)); y < std::min(height - 1, row_of(band + 1)); ++y) {
+      const std::uint8_t* row = luma_.data() + std::ptrdiff_t(y) * width;
+      find_edges(row, width, is_edge.data());
+      for (int x = next_edge(is_edge, 1, width - 1); x < width - 1; x = next_edge(is_edge, x + 1, width - 1))
+        smoothed.push_back(
+            {std::size_t(y) * std::size_t(width) + std::size_t(x), along_edge(rgba, row + x, width, height, x, y)});
+    }
+  });
   // Written at the end, because every colour is computed from the unchanged picture.
-  for (const Smoothed& s : smoothed_) std::copy_n(s.rgba.data(), 4, &rgba[4 * s.pixel]);
+  for (const Band& band : bands_)
+    for (const Smoothed& s : band.smoothed) std::copy_n(s.rgba.data(), 4, &rgba[4 * s.pixel]);
 }
 
 }  // namespace ctpm::render

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace ctpm::render {
 namespace {
@@ -84,25 +85,34 @@ void VertexArray::set_stream(const Gl& gl, std::span<const float> data) {
 
 Result<Done> PictureTarget::create(const Gl& gl, int w, int h) {
   width = w, height = h;
-  GLuint colour = 0, depth = 0;
+  GLuint colour = 0;
   gl.GenFramebuffers(1, &framebuffer), gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   const auto attach = [&](GLuint& buffer, GLenum format, GLenum place) {
     gl.GenRenderbuffers(1, &buffer), gl.BindRenderbuffer(GL_RENDERBUFFER, buffer);
     gl.RenderbufferStorage(GL_RENDERBUFFER, format, w, h);
     gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, place, GL_RENDERBUFFER, buffer);
   };
-  attach(colour, GL_RGBA8, GL_COLOR_ATTACHMENT0), attach(depth, GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL_ATTACHMENT);
+  attach(colour, GL_RGBA8, GL_COLOR_ATTACHMENT0), attach(depth, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
   if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE || gl.GetError() != GL_NO_ERROR)
     return Error{"OpenGL", "no picture of " + std::to_string(w) + "x" + std::to_string(h) + " can be drawn to",
                  "ask for a smaller picture"};
   return Done{};
 }
 
+void PictureTarget::need_stencil(const Gl& gl) {
+  if (std::exchange(has_stencil, true)) return;
+  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer), gl.BindRenderbuffer(GL_RENDERBUFFER, depth);
+  gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH24_STENCIL8, width, height);
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, depth);
+  CTPM_CHECK(gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE, "a picture gets no stencil");
+}
+
 void PictureTarget::begin(const Gl& gl, const PixelRect& rect) const {
   gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   gl.Viewport(0, 0, width, height);
+  // All of it: a driver in software clears a part as slowly as it draws it.
+  gl.Disable(GL_SCISSOR_TEST), gl.ClearColor(0, 0, 0, 0), gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   gl.Enable(GL_SCISSOR_TEST), gl.Scissor(rect.x, rect.y, rect.width, rect.height);
-  gl.ClearColor(0, 0, 0, 0), gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
 void PictureTarget::read(const Gl& gl, const PixelRect& rect, std::vector<std::uint8_t>& rgba) const {

@@ -56,12 +56,15 @@ struct PixelRect {
 
 /// The framebuffer that a picture is drawn to.
 struct PictureTarget {
-  GLuint framebuffer = 0;
+  GLuint framebuffer = 0, depth = 0;
   int width = 0, height = 0;
+  bool has_stencil = false;
 
   /// Errors: the driver refuses the size.
   Result<Done> create(const Gl& gl, int width, int height);
-  /// Clears the rectangle to transparent, and clips later drawing to it. Row 0 is the bottom.
+  /// Gives it a stencil from now on. Each picture with one takes longer.
+  void need_stencil(const Gl& gl);
+  /// Clears the picture to transparent, and clips later drawing to the rectangle. Row 0 is the bottom.
   void begin(const Gl& gl, const PixelRect& rect) const;
   /// Reads the rectangle: RGBA, bottom row first.
   void read(const Gl& gl, const PixelRect& rect, std::vector<std::uint8_t>& rgba) const;

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <future>
 #include <optional>
+#include <thread>
 
+#include "core/parallel/team.h"
 #include "studio/render/backdrop.h"
 #include "studio/render/edge_smoothing.h"
 #include "studio/render/element_values.h"
@@ -71,6 +74,7 @@ struct Renderer::Parts {
   Frame backdrop, frame;
   std::vector<std::uint8_t> rgba;
   EdgeSmoother edges;
+  parallel::Team team{std::clamp(int(std::thread::hardware_concurrency()), 1, 2)};
   PictureTarget target;
   Program tool, sphere, rod;
   OrganPainter organs;
@@ -116,6 +120,7 @@ struct Renderer::Parts {
   void cast_shadow(DrawnObstacle& obstacle, const Cutaway& cutaway);
   void draw_behind(const DrawOptions& options);
   void read_frame();
+  void composite(int row);
 };
 
 Result<Done> Renderer::Parts::create_programs() {
@@ -345,21 +350,27 @@ void Renderer::Parts::draw_behind(const DrawOptions& options) {
 void Renderer::Parts::read_frame() {
   if (rect.width == 0 || rect.height == 0) return;
   target.read(gl(), rect, rgba);
-  edges.smooth(rgba, rect.width, rect.height);
-  for (int row = 0; row < rect.height; ++row) {
-    const std::uint8_t* from = rgba.data() + std::size_t(row) * std::size_t(rect.width) * 4;
-    std::uint8_t* to =
-        frame.rgb.data() +
-        (std::size_t(frame.height - 1 - rect.y - row) * std::size_t(frame.width) + std::size_t(rect.x)) * 3;
-    for (int x = 0; x < rect.width; ++x, from += 4, to += 3) {
-      const unsigned rest = 255u - from[3];
-      if (rest == 255) continue;
-      if (rest == 0) {
-        std::memcpy(to, from, 3);
-        continue;
-      }
-      for (int c = 0; c < 3; ++c) to[c] = std::uint8_t(std::min(255u, from[c] + (to[c] * rest + 127) / 255));
+  edges.smooth(rgba, rect.width, rect.height, team);
+  constexpr int kBands = 8;
+  team.for_each(kBands, [&](int band) {
+    for (int row = rect.height * band / kBands; row < rect.height * (band + 1) / kBands; ++row) composite(row);
+  });
+}
+
+/// A row of the drawn pixels over the background.
+void Renderer::Parts::composite(int row) {
+  const std::uint8_t* from = rgba.data() + std::size_t(row) * std::size_t(rect.width) * 4;
+  std::uint8_t* to =
+      frame.rgb.data() +
+      (std::size_t(frame.height - 1 - rect.y - row) * std::size_t(frame.width) + std::size_t(rect.x)) * 3;
+  for (int x = 0; x < rect.width; ++x, from += 4, to += 3) {
+    const unsigned rest = 255u - from[3];
+    if (rest == 255) continue;
+    if (rest == 0) {
+      std::memcpy(to, from, 3);
+      continue;
     }
+    for (int c = 0; c < 3; ++c) to[c] = std::uint8_t(std::min(255u, from[c] + (to[c] * rest + 127) / 255));
   }
 }
 
@@ -438,6 +449,9 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
   p.clip = p.clip_from_world(options.camera);
   p.organs.update(gl, state);
   p.rect = p.footprint(state, options);
+  // Another thread draws the background while this one tells the driver what to draw.
+  const std::future<void> behind = std::async(std::launch::async, [&] { p.draw_behind(options); });
+  if (options.cutaway.is_on()) p.target.need_stencil(gl);
   p.target.begin(gl, p.rect);
   gl.Enable(GL_DEPTH_TEST), gl.DepthFunc(GL_LEQUAL);
   if (options.view == View::spheres || options.view == View::both) p.draw_spheres(state, options);
@@ -450,8 +464,8 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
     p.organs.draw(gl, p.scene, options);
   }
   p.draw_ghost(state, options);
-  gl.Flush();  // the driver's threads draw while this one computes the background
-  p.draw_behind(options);
+  gl.Flush();
+  behind.wait();
   p.read_frame();
   return std::move(p.frame);
 }
