@@ -42,17 +42,19 @@ inline Inputs touched_slice_inputs(int tick) {
   return inputs;
 }
 
-/// As touched_slice_inputs(), but the scalpel leaves a bridge in which no element runs: the slice tears off there.
+/// As touched_slice_inputs(), but the scalpel leaves a bridge. Tissue that sags keeps some elements in it: it holds.
 inline Inputs touched_tear_inputs(int tick) {
   Inputs inputs = touched_slice_inputs(tick);
   if (tick > 100 && tick < 110) inputs.tool = -1;
   return inputs;
 }
 
-/// The same, and the ball presses on that bridge.
+/// As touched_slice_inputs(), but the scalpel leaves a bridge in which no element runs. The slice tears off there, and
+/// the ball presses on the tear.
 inline Inputs touched_bridge_inputs(int tick) {
-  Inputs inputs = touched_tear_inputs(tick);
-  if (tick >= 200) inputs.position.x = 0.0255, inputs.position.y = 0.0022;
+  Inputs inputs = touched_slice_inputs(tick);
+  if (tick > 104 && tick < 109) inputs.tool = -1;
+  if (tick >= 200) inputs.position.x = 0.0255, inputs.position.y = 0.003;
   return inputs;
 }
 
