@@ -215,15 +215,12 @@ void CutGrid::index_spheres() {
 
 /// Severs what a row of the swept surface crosses.
 void CutGrid::sever_row(const State& state, std::size_t row) {
-  cutting::Front from, to;
-  cutting::NewlySwept newly{};
+  auto [from, to, newly] = cutting::swept_row(state, row);
   std::array<bool, kEdgeNodes> is_outside{};
   bool any = false;
-  for (std::size_t n = 0; n < kEdgeNodes; ++n) {
-    from[n] = state.swept[(row - 1) * kEdgeNodes + n], to[n] = state.swept[row * kEdgeNodes + n];
-    newly[n] = state.swept_organ[row * kEdgeNodes + n];
-    if (newly[n] != organ_ + 1) newly[n] = 0;
-    any = any || newly[n] != 0;
+  for (std::uint8_t& organ : newly) {
+    if (organ != organ_ + 1) organ = 0;
+    any = any || organ != 0;
   }
   if (!any) return;
   const auto organ = std::size_t(organ_);

@@ -29,7 +29,7 @@ class Carried {
     if (node >= 0 && by[std::size_t(node)] < 0) by[std::size_t(node)] = sphere, front_.push_back(node);
   }
 
-  /// Goes on from all nodes over the edges of whole tissue, one after the other from each.
+  /// Goes on from the nodes where spheres begin, edge by edge in whole tissue, as long as nodes are carried by none.
   void spread() {
     for (std::vector<Index> next; !front_.empty(); front_.swap(next), next.clear())
       for (const Index from : front_)
@@ -138,18 +138,18 @@ std::optional<int> TornTissue::elements_between(Index from, Index to, int most, 
   return std::nullopt;
 }
 
-/// Whether elements held two spheres together that now are far from each other, or apart, in the network. What it never
-/// held together is held by the tissue alone. Around the end of a cut there is a short way.
+/// Whether two spheres that the network held together are far from each other in it now, or apart. Around the end of a
+/// cut there is a short way. Spheres that were farther apart before any cut are held together by the tissue alone.
 bool TornTissue::came_apart(Index p, Index q) {
-  constexpr int kNear = 6, kFar = 4, kLonger = 2;  // elements
+  constexpr int kHeld = 6, kShort = 4, kLonger = 2;  // elements
   if (p < 0 || q < 0 || p == q) return false;
   const auto [known, is_new] = apart_.try_emplace({std::min(p, q), std::max(p, q)}, false);
   if (!is_new) return known->second;
   const auto first = std::size_t(model_.organs[organ_].first), i = first + std::size_t(p), j = first + std::size_t(q);
   const bool is_loose = whole_[i] == whole_[j] && pieces_.piece()[i] != pieces_.piece()[j];
   if (is_loose) return known->second = true;
-  const std::optional<int> uncut = elements_between(p, q, kNear, false);
-  return known->second = uncut && !elements_between(p, q, std::max(kFar, *uncut + kLonger), true);
+  const std::optional<int> uncut = elements_between(p, q, kHeld, false);
+  return known->second = uncut && !elements_between(p, q, std::max(kShort, *uncut + kLonger), true);
 }
 
 TornTissue::Tear TornTissue::find(const CutGrid& grid, const State& state) {

@@ -20,8 +20,8 @@ class CutGrid;
 
 /// Where tissue comes apart because nothing holds it: cuts may sever every element between neighbouring spheres and yet
 /// leave a bridge of tissue in which no element runs. It tears in the middle between them, unless they are still joined
-/// by a short way around it. The severed
-/// elements are those that the rows of the swept surface cross, so that the tear is a function of them alone.
+/// by a short way around it. The severed elements are those that the rows of the swept surface cross, so that the tear
+/// is a function of the rows alone.
 class TornTissue {
  public:
   struct Edge {
@@ -36,6 +36,7 @@ class TornTissue {
   /// Severs the elements that a row crosses. What a row crosses that may still move is taken back by take_back().
   void sever(const cutting::Front& from, const cutting::Front& to, const cutting::NewlySwept& newly, bool may_move);
   void take_back();
+  /// Nothing is severed.
   void reset();
 
   struct Tear {

@@ -68,6 +68,15 @@ SweptQuad swept_quad(const State& state, std::size_t row, std::size_t node) {
           state.swept[at + 1]};
 }
 
+SweptRow swept_row(const State& state, std::size_t row) {
+  SweptRow swept;
+  for (std::size_t n = 0; n < kEdgeNodes; ++n) {
+    const std::size_t at = row * kEdgeNodes + n;
+    swept.from[n] = state.swept[at - kEdgeNodes], swept.to[n] = state.swept[at], swept.newly[n] = state.swept_organ[at];
+  }
+  return swept;
+}
+
 bool sweeps_same(const State& a, const State& b, std::int32_t organ) {
   const auto at = [&](const State& state, std::size_t row, std::size_t node) {
     const SweptQuad quad = row < swept_rows(state) ? swept_quad(state, row, node) : kNothingSwept;

@@ -33,6 +33,15 @@ inline std::size_t swept_rows(const State& state) { return state.swept.size() / 
 /// The part of row `row` from node `node` to the next; its organ is -1 where nothing was swept.
 SweptQuad swept_quad(const State& state, std::size_t row, std::size_t node);
 
+/// What the edge swept in a row: where it came from, where it went, and what of it was newly swept.
+struct SweptRow {
+  Front from, to;
+  NewlySwept newly;
+};
+
+/// `row` >= 1.
+SweptRow swept_row(const State& state, std::size_t row);
+
 /// Whether the swept surfaces of two States are the same in an organ.
 bool sweeps_same(const State& a, const State& b, std::int32_t organ);
 

@@ -450,7 +450,7 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
   p.organs.update(gl, state);
   p.rect = p.footprint(state, options);
   // Another thread draws the background while this one tells the driver what to draw.
-  const std::future<void> behind = std::async(std::launch::async, [&] { p.draw_behind(options); });
+  std::future<void> behind = std::async(std::launch::async, [&] { p.draw_behind(options); });
   if (options.cutaway.is_on()) p.target.need_stencil(gl);
   p.target.begin(gl, p.rect);
   gl.Enable(GL_DEPTH_TEST), gl.DepthFunc(GL_LEQUAL);
@@ -465,7 +465,7 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
   }
   p.draw_ghost(state, options);
   gl.Flush();
-  behind.wait();
+  behind.get();
   p.read_frame();
   return std::move(p.frame);
 }

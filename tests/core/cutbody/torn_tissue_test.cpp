@@ -39,12 +39,7 @@ std::vector<std::int32_t> pieces_of_rows(const Model& model, const State& swept)
   State state = rest_state(model);
   std::vector<cutting::Crossing> crossings;
   for (std::size_t row = 1; row < cutting::swept_rows(swept); ++row) {
-    cutting::Front from, to;
-    cutting::NewlySwept newly;
-    for (std::size_t n = 0; n < kEdgeNodes; ++n) {
-      const std::size_t at = row * kEdgeNodes + n;
-      from[n] = swept.swept[at - kEdgeNodes], to[n] = swept.swept[at], newly[n] = swept.swept_organ[at];
-    }
+    const auto [from, to, newly] = cutting::swept_row(swept, row);
     (void)cutting::sever_swept(model, elements, from, to, newly, state, crossings);
   }
   cutting::Pieces pieces(model);
