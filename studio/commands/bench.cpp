@@ -49,7 +49,7 @@ Studies run_studies(const bench::BenchOptions& options) {
 }
 
 int run_bench(const BenchArguments& arguments) {
-  if (const Result<Done> ready = reports::prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
+  if (const Result<Done> ready = reports::check_folder(arguments.folder); !ready) return print_errors(ready.errors());
   const Result<std::vector<bench::BenchStudy>> studies = run_studies(arguments.options);
   if (!studies) return print_errors(studies.errors());
   if (const Result<Done> written = bench::write_bench_report(arguments.folder, *studies); !written)

@@ -29,7 +29,7 @@ void print_missed(const fidelity::FidelityResults& results) {
 
 int run_fidelity_command(FidelityArguments arguments) {
   if (!arguments.scene.empty()) arguments.options.scene = arguments.scene;
-  if (const Result<Done> ready = reports::prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
+  if (const Result<Done> ready = reports::check_folder(arguments.folder); !ready) return print_errors(ready.errors());
   const Result<fidelity::FidelityResults> results =
       fidelity::run_fidelity(arguments.options, [](const std::string& title, std::int64_t done, std::int64_t total) {
         print_remark("recipe " + std::to_string(done + 1) + " of " + std::to_string(total) + ": " + title);

@@ -13,7 +13,7 @@ struct PaperArguments {
 };
 
 int run_paper(const PaperArguments& arguments) {
-  if (const Result<Done> ready = reports::prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
+  if (const Result<Done> ready = reports::check_folder(arguments.folder); !ready) return print_errors(ready.errors());
   Result<paper::PaperResults> results = [&] {
     ProgressLine progress("running the paper's experiments");
     return paper::run_paper_experiments(arguments.scenes,

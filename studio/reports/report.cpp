@@ -4,6 +4,7 @@
 #include <fstream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <vector>
 
 #include "studio/output/files.h"
 #include "studio/output/option_name.h"
@@ -182,6 +183,17 @@ Result<Done> prepare_folder(const std::string& folder) {
     return Error{other, "exists already, and no report of this program lies beside it",
                  "give another folder with " + output::option_name("report.folder")};
   return output::check_writable((std::filesystem::path(folder) / "report.html").string());
+}
+
+Result<Done> check_folder(const std::string& folder) {
+  std::error_code ignored;
+  std::vector<std::filesystem::path> missing;
+  for (std::filesystem::path place = std::filesystem::absolute(folder, ignored).lexically_normal();
+       !place.empty() && !std::filesystem::exists(place, ignored); place = place.parent_path())
+    missing.push_back(place);
+  const Result<Done> ready = prepare_folder(folder);
+  for (const std::filesystem::path& place : missing) std::filesystem::remove(place, ignored);
+  return ready;
 }
 
 Result<Done> write_report(const std::string& folder, const std::vector<ReportFile>& files) {

@@ -72,8 +72,12 @@ struct ReportFile {
   std::string name, text;
 };
 
-/// Creates `folder` if necessary and checks that it can be written. Call it before the work to be reported.
+/// Creates `folder` if necessary and checks that it can be written.
 Result<Done> prepare_folder(const std::string& folder);
+
+/// Checks that prepare_folder() will do, and leaves no folder behind. Call it before the work to be reported, which may
+/// be refused.
+Result<Done> check_folder(const std::string& folder);
 
 /// Writes each file under a temporary name, then renames it, so that no reader sees an incomplete file. Errors: those
 /// of output/files.h.

@@ -172,6 +172,7 @@ TEST(BenchCommand, ASceneWithoutABallIsRefusedWithItsName) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("bare.json"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("ball"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out")) << "what is refused leaves no folder";
 }
 
 }  // namespace

@@ -106,8 +106,9 @@ TEST(FidelityCommand, WritesAReportOfTheRecipesThatAreAskedFor) {
 TEST(FidelityCommand, NamesEveryRecipeThatDoesNotExistOrNeedsAScene) {
   const TemporaryFolder folder;
   const ProgramOutcome outcome =
-      run_ctpm({"fidelity", "-o", "out", "--only", "nothing,tension,scene-turns,neither"}, folder.path());
+      run_ctpm({"fidelity", "-o", "deep/out/", "--only", "nothing,tension,scene-turns,neither"}, folder.path());
   EXPECT_EQ(outcome.code, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "deep")) << "what is refused leaves no folder";
   for (const char* part : {"--only", "no recipe nothing", "no recipe neither", "scene-turns needs a scene"})
     EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
 }
