@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <utility>
 
 namespace ctpm::cutbody {
@@ -17,14 +16,6 @@ static_assert(JoinedSpheres::kBlurHops >= kBlur);
 constexpr std::array<double, Sight::kMostDetour + 1> kPart{1, 0.75, 0.5, 0.25};
 
 }  // namespace
-
-const Sight::Seen& JoinedSpheres::seen_from(Index node) {
-  const auto [found, is_new] = seen_.try_emplace(node);
-  Known& known = found->second;
-  if (is_new || sight_.changed_in(node) > known.round) known.seen = sight_.from(node);
-  known.round = round();
-  return known.seen;
-}
 
 std::vector<JoinedSpheres::Index> JoinedSpheres::nodes() const {
   std::vector<Index> nodes;
@@ -70,29 +61,32 @@ void JoinedSpheres::find_nodes(Vec3 rest, Index side) {
   if (nodes_.empty()) nodes_.push_back({side, 1});
 }
 
-std::span<const JoinedSpheres::Joined> JoinedSpheres::around(Vec3 rest, Index side) {
-  joined_.clear(), nodes_.assign(1, {side, 1});
-  if (const Sight::Seen& seen = seen_from(side); !seen.has_cut) {
-    for (const Sight::Seen::Sphere& s : seen.sphere) joined_.push_back({s.sphere, 1});
-    return joined_;
-  }
-  find_nodes(rest, side);
-  sum_.resize(std::size_t(grid_.sphere_count()), 0), is_known_.resize(sum_.size() / kWord + 1, 0);
-  double total = 0;
-  for (const Weighted& n : nodes_) {
-    total += n.weight;
-    std::array<double, kPart.size()> share;
-    for (std::size_t detour = 0; detour < share.size(); ++detour) share[detour] = n.weight * kPart[detour];
-    for (const Sight::Seen::Sphere& s : seen_from(n.node).sphere) {
-      sum_[std::size_t(s.sphere)] += share[std::size_t(s.detour)];
-      is_known_[std::size_t(s.sphere) / kWord] |= std::uint64_t(1) << (std::size_t(s.sphere) % kWord);
-    }
-  }
-  for (std::size_t word = 0; word < is_known_.size(); ++word)
-    for (std::uint64_t left = std::exchange(is_known_[word], 0); left != 0; left &= left - 1) {
-      const std::size_t s = word * kWord + std::size_t(std::countr_zero(left));
-      joined_.push_back({Index(s), std::exchange(sum_[s], 0) / total});
-    }
+void JoinedSpheres::go_to(Vec3 rest, Index side) {
+  is_parted_ = sight_.has_cut(side);
+  if (is_parted_)
+    find_nodes(rest, side);
+  else
+    nodes_.assign(1, {side, 1});
+  place_.clear(), total_ = 0;
+  for (const Weighted& n : nodes_) place_.push_back(grid_.node(n.node)), total_ += n.weight;
+}
+
+double JoinedSpheres::part_of(Index sphere) {
+  const Sight::View* view = sight_.view_of(sphere);
+  if (view == nullptr) return 0;
+  if (!is_parted_) return view->detour(place_.front()) < 0 ? 0 : 1;
+  double sum = 0;
+  for (std::size_t n = 0; n < nodes_.size(); ++n)
+    if (const Index detour = view->detour(place_[n]); detour >= 0) sum += nodes_[n].weight * kPart[std::size_t(detour)];
+  return sum / total_;
+}
+
+std::span<const JoinedSpheres::Joined> JoinedSpheres::within(Vec3 centre, double reach) {
+  joined_.clear();
+  bins_.for_each_within(centre, reach, [&](Index sphere) {
+    if (const double part = part_of(sphere); part > 0) joined_.push_back({sphere, part});
+  });
+  std::sort(joined_.begin(), joined_.end(), [](const Joined& a, const Joined& b) { return a.sphere < b.sphere; });
   return joined_;
 }
 

@@ -2,10 +2,10 @@
 
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "core/cutbody/cut_grid.h"
+#include "core/cutbody/rest_bins.h"
 #include "core/cutbody/sight.h"
 
 namespace ctpm::cutbody {
@@ -27,20 +27,24 @@ class JoinedSpheres {
   /// depend on edges so far away.
   static constexpr Index kBlurHops = 2, kMostHops = Sight::kMostHops + kBlurHops;
 
-  /// `grid` must outlive the JoinedSpheres.
-  explicit JoinedSpheres(const CutGrid& grid) : grid_(grid), sight_(grid) {}
+  /// Both must outlive the JoinedSpheres.
+  JoinedSpheres(const Model& model, const CutGrid& grid)
+      : grid_(grid), sight_(grid), bins_(model, model.organs[std::size_t(grid.organ())]) {}
 
   /// Follows the grid, of which edges or spheres in a box have changed.
   void update(CutGrid::NodeBox changed) { sight_.update(changed); }
-  /// Forgets all: it is found again when it is asked for.
-  void forget() { seen_ = {}; }
 
   /// Whether a cut is so near to a node in tissue that it may part it from spheres.
-  bool is_near_cut(Index side) { return seen_from(side).has_cut; }
+  bool is_near_cut(Index side) const { return sight_.has_cut(side); }
 
-  /// The spheres of a place at rest [m] on the side of a node in tissue at most sqrt(3) steps of the grid away,
+  /// Goes to a place at rest [m] on the side of a node in tissue at most sqrt(3) steps of the grid away: all below is
+  /// asked of it.
+  void go_to(Vec3 rest, Index side);
+  /// How far the place is joined to a sphere; 0: not at all.
+  double part_of(Index sphere);
+  /// The spheres that are joined and less than `reach` [m] from `centre` at rest, and perhaps some at the reach;
   /// ascending. Valid until the next call.
-  std::span<const Joined> around(Vec3 rest, Index side);
+  std::span<const Joined> within(Vec3 centre, double reach);
 
   /// Number of calls of update().
   std::uint32_t round() const { return sight_.round(); }
@@ -48,28 +52,23 @@ class JoinedSpheres {
     Index node;
     double weight;
   };
-  /// The nodes of the place's own side that said so in the last call of around(), and how much each counted.
+  /// The nodes of the place's own side that say what it is joined to, and how much each counts.
   std::span<const Weighted> weighted_nodes() const { return nodes_; }
-  /// The nodes on which, and on the edges of which, the result of the last call of around() depends.
+  /// The nodes on which, and on the edges of which, it depends what the place is joined to.
   std::vector<Index> nodes() const;
   /// Whether nodes have the edges, and see what they saw, in a round.
   bool is_as_in(std::uint32_t round, std::span<const Index> nodes) const;
 
  private:
-  struct Known {
-    Sight::Seen seen;
-    std::uint32_t round = 0;  ///< in which it was seen
-  };
   void find_nodes(Vec3 rest, Index side);
-  const Sight::Seen& seen_from(Index node);
 
   const CutGrid& grid_;
   Sight sight_;
-  std::unordered_map<Index, Known> seen_;
+  RestBins bins_;
   std::vector<Weighted> nodes_;
-  static constexpr std::size_t kWord = 64;
-  std::vector<double> sum_;              ///< of each sphere; 0 between calls
-  std::vector<std::uint64_t> is_known_;  ///< a bit for each sphere of which the sum is not 0
+  std::vector<CutGrid::Node> place_;  ///< of each of them in the grid
+  double total_ = 0;                  ///< of their weights
+  bool is_parted_ = false;            ///< a cut is near
   std::vector<Joined> joined_;
 };
 

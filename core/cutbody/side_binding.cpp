@@ -68,16 +68,6 @@ double least_variance(std::span<const Vec3> points, std::span<const double> weig
   return minors > 0 ? std::max(0.0, determinant / minors) : 0.0;
 }
 
-/// Whether a binding follows spheres that a place is wholly joined to.
-bool is_joined(const SideBinding::Binding& binding, std::span<const JoinedSpheres::Joined> joined) {
-  constexpr double kWhole = 1 - 1e-9;
-  return std::all_of(binding.sphere.begin(), binding.sphere.end(), [&](CutGrid::Index s) {
-    const auto at = std::lower_bound(joined.begin(), joined.end(), s,
-                                     [](const JoinedSpheres::Joined& j, CutGrid::Index i) { return j.sphere < i; });
-    return at != joined.end() && at->sphere == s && at->part > kWhole;
-  });
-}
-
 }  // namespace
 
 /// Several ways to follow spheres, the first ones as far as their weights are small: so that neighbouring places change
@@ -131,7 +121,7 @@ SideBinding::SideBinding(const Model& model, const CutGrid& grid)
       organ_(model.organs[std::size_t(grid.organ())]),
       whole_(model.surfaces[std::size_t(grid.organ())]),
       grid_(grid),
-      joined_(grid),
+      joined_(model, grid),
       nearest_(grid) {}
 
 /// Vertices of one side differ in their places.
@@ -269,21 +259,23 @@ void SideBinding::bind(Index side, bool is_outer, Entry& entry) {
   bound = {entry.put, {}, {}}, entry.nodes.clear();
   if (is_outer) bound.origin = origin_of(bound.rest);
   const bool is_near_cut = side >= 0 && joined_.is_near_cut(side);
-  std::span<const Joined> joined;
-  if (side >= 0) joined = joined_.around(bound.rest, side), entry.nodes = joined_.nodes();
+  if (side >= 0) joined_.go_to(bound.rest, side), entry.nodes = joined_.nodes();
   if (bound.origin.triangle >= 0) {
     const Vec3 place = place_of(bound.origin);
     if (norm(place - bound.rest) <= kOnSurface * organ_.spacing) {
       bound.rest = place, bound.binding = follow_whole(bound.origin);
-      if (!is_near_cut || is_joined(bound.binding, joined)) return;
+      if (!is_near_cut || is_joined(bound.binding)) return;
     }
   }
   const double reach = surface::kBindingReach * organ_.spacing;
+  const auto joined = [&](double within) {
+    return side >= 0 ? joined_.within(bound.rest, within) : std::span<const Joined>();
+  };
   Mix mix;
-  mix.add(follow(bound.rest, joined, reach), kNear);
-  if (!mix.is_whole()) mix.add(follow(bound.rest, joined, kWider * reach), kFar);
+  mix.add(follow(bound.rest, joined(reach), reach), kNear);
+  if (!mix.is_whole()) mix.add(follow(bound.rest, joined(kWider * reach), kWider * reach), kFar);
   if (!mix.is_whole()) {
-    const Binding own = follow_frames(bound.rest, joined, reach);
+    const Binding own = follow_frames(bound.rest, joined(reach), reach);
     mix.add(own, smooth(own.depth / kEnough));
   }
   entry.by_piece = !mix.is_whole();
@@ -297,6 +289,13 @@ void SideBinding::bind(Index side, bool is_outer, Entry& entry) {
       if (!mix.is_whole()) follow_piece(bound.rest, piece, mix);
   }
   bound.binding = mix.binding();
+}
+
+/// Whether a binding follows spheres to which the place that joined_ went to is joined wholly.
+bool SideBinding::is_joined(const Binding& binding) {
+  constexpr double kWhole = 1 - 1e-9;
+  return std::all_of(binding.sphere.begin(), binding.sphere.end(),
+                     [&](Index sphere) { return joined_.part_of(sphere) > kWhole; });
 }
 
 /// Finds the pieces that vertices follow. One without spheres, as a strip thinner than a spacing may be, goes with the
@@ -362,7 +361,7 @@ SideBinding::Binding SideBinding::follow_any(Vec3 rest, Index piece) const {
   return follow_frames(rest, {&only, 1}, 2 * least);
 }
 
-/// Follows those spheres that are the fewest edges away from the nodes of the place that joined_ was asked for last.
+/// Follows those spheres that are the fewest edges away from the nodes of the place that joined_ went to.
 /// Its depth is the part of the nodes to which one is near.
 SideBinding::Binding SideBinding::follow_nearest(Vec3 rest) {
   constexpr double kFades = 4;  // edges
@@ -427,7 +426,8 @@ const TissueFrame& SideBinding::frame_of(Index sphere) {
   if (home < 0) {
     add(sphere, 1);
   } else {
-    for (const Joined& s : joined_.around(grid_.rest(home), home)) add(s.sphere, s.part);
+    joined_.go_to(grid_.rest(home), home);
+    for (const Joined& s : joined_.within(at, reach)) add(s.sphere, s.part);
     known.nodes = joined_.nodes();
   }
   Vec3 mean;

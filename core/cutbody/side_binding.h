@@ -67,7 +67,7 @@ class SideBinding {
   /// Follows the grid, of which edges or spheres in a box have changed.
   void update(CutGrid::NodeBox changed);
   /// Forgets all: it is found again when it is asked for.
-  void forget() { bound_ = {}, frames_ = {}, joined_.forget(); }
+  void forget() { bound_ = {}, frames_ = {}; }
 
   /// What a vertex follows, and where it is: on the organ's own surface or on the swept surface of `state`. It is
   /// remembered. A vertex whose side is -1 is far from all cuts.
@@ -100,6 +100,7 @@ class SideBinding {
   Origin origin_of(Vec3 rest) const;
   Vec3 place_of(const Origin& origin) const;
   void bind(Index side, bool is_outer, Entry& entry);
+  bool is_joined(const Binding& binding);
   Binding follow_whole(const Origin& origin) const;
   Binding follow(Vec3 rest, std::span<const Joined> spheres, double reach) const;
   Binding follow_nearest(Vec3 rest);

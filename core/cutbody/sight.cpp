@@ -20,21 +20,6 @@ CutGrid::Index shortest_way(CutGrid::Node by) {
   return up + down;
 }
 
-/// For each row around a node, and each number of edges, the nodes to which the shortest way has so many.
-using Shortest = std::array<std::uint32_t, Sight::kMostHops + 1>;
-std::vector<Shortest> shortest_ways() {
-  constexpr CutGrid::Index kMost = Sight::kMostHops;
-  std::vector<Shortest> ways;
-  for (CutGrid::Index k = -kMost; k <= kMost; ++k)
-    for (CutGrid::Index j = -kMost; j <= kMost; ++j) {
-      Shortest& row = ways.emplace_back();
-      for (CutGrid::Index i = -kMost; i <= kMost; ++i)
-        if (const CutGrid::Index way = shortest_way({i, j, k}); way <= kMost)
-          row[std::size_t(way)] |= std::uint32_t(1) << (i + kMost);
-    }
-  return ways;
-}
-
 CutGrid::Node end_of(CutGrid::Node n, int direction) {
   return {n[0] + (direction & 1), n[1] + (direction >> 1 & 1), n[2] + (direction >> 2)};
 }
@@ -48,7 +33,7 @@ Sight::Sight(const CutGrid& grid)
       windows_((grid.extent()[0] - 1) / kStride + 1) {
   const auto size = std::size_t(rows_) * std::size_t(layers_) * std::size_t(windows_);
   for (Bits& open : is_open_) open.assign(size, 0);
-  at_cut_.assign(size, 0), beside_cut_.assign(size, 0), has_sphere_.assign(size, 0);
+  at_cut_.assign(size, 0), beside_cut_.assign(size, 0);
   changed_in_.assign(std::size_t(grid.count()), 0);
   find_edges({{0, 0, 0}, grid.extent()});
   find_beside_cut({{0, 0, 0}, grid.extent()});
@@ -72,7 +57,7 @@ void Sight::set(Bits& bits, CutGrid::Node n, bool value) {
 }
 
 void Sight::update(CutGrid::NodeBox changed) {
-  ++round_;
+  ++round_, changed_.clear();
   find_edges(changed);
   find_beside_cut(changed);
   if (changed.low == CutGrid::Node{} && changed.high == grid_.extent()) {
@@ -81,7 +66,7 @@ void Sight::update(CutGrid::NodeBox changed) {
   }
   for (std::size_t s = 0; s < view_.size(); ++s)
     if (node_of_sphere_[s] != grid_.node_of_sphere(Index(s)) ||
-        (view_[s] && grid_.is_near(changed, view_[s]->node, kMostHops + 1)))
+        (view_[s] && grid_.is_near(changed, view_[s]->node_, kMostHops + 1) && sees_changes(*view_[s])))
       look_again(Index(s));
   find_spheres();
 }
@@ -107,10 +92,10 @@ void Sight::find_edges(CutGrid::NodeBox changed) {
       const bool is_edge = grid_.contains(end_of(n, d)) && grid_.in_tissue(node) && grid_.in_tissue(grid_.end(node, d));
       const bool is_open = is_edge && !grid_.is_parted(node, d);
       if (is_open != is_set(is_open_[std::size_t(d)], n))
-        set(is_open_[std::size_t(d)], n, is_open), mark(node), mark(grid_.end(node, d));
+        set(is_open_[std::size_t(d)], n, is_open), mark_edges(node), mark_edges(grid_.end(node, d));
       at_cut = at_cut || is_cut(n, d) || is_cut({n[0] - (d & 1), n[1] - (d >> 1 & 1), n[2] - (d >> 2)}, d);
     }
-    set(at_cut_, n, at_cut), set(has_sphere_, n, !grid_.spheres_at(node).empty());
+    set(at_cut_, n, at_cut);
   });
 }
 
@@ -126,14 +111,19 @@ void Sight::arrive(std::size_t first, const Row* last, Index layer, std::span<Ro
   }
 }
 
-/// Finds what is reached over `hops` edges and not over fewer.
-void Sight::go_on(CutGrid::Node home, Index hops, const Rows& last, Rows& visited, Rows& next) const {
+/// Finds what is reached over `hops` edges and not over fewer. Returns whether anything is.
+bool Sight::go_on(CutGrid::Node home, Index hops, const Rows& last, Rows& visited, Rows& next) const {
+  Row any = 0;
   for (Index k = -hops; k <= hops; ++k) {
     std::array<Row, std::size_t(kRows)> found{};
     const auto count = std::size_t(2 * hops + 1), to = around(-hops, k);
     arrive(at(window(home), home[1] - hops, home[2] + k), &last[to], kRows, std::span(found).first(count));
-    for (std::size_t j = 0; j < count; ++j) next[to + j] = found[j] & ~visited[to + j], visited[to + j] |= found[j];
+    for (std::size_t j = 0; j < count; ++j) {
+      next[to + j] = found[j] & ~visited[to + j], visited[to + j] |= found[j];
+      any |= next[to + j];
+    }
   }
+  return any != 0;
 }
 
 /// Finds the nodes again from which an edge across a cut is fewer edges away than are seen along, where edges in a box
@@ -169,10 +159,17 @@ void Sight::find_beside_cut(CutGrid::NodeBox changed) {
   }
 }
 
-const Sight::View& Sight::view_of(Index sphere, Index node) {
+const Sight::View* Sight::view_of(Index sphere) {
   std::unique_ptr<View>& known = view_[std::size_t(sphere)];
-  if (!known) known = look_from(node);
-  return *known;
+  const Index node = node_of_sphere_[std::size_t(sphere)];
+  if (!known && node >= 0) known = look_from(node);
+  return known.get();
+}
+
+/// Whether a way of a view may go along an edge that changed. No way to what is seen goes by what is not: a way is
+/// never less of a detour than its beginning.
+bool Sight::sees_changes(const View& view) const {
+  return std::any_of(changed_.begin(), changed_.end(), [&](Index node) { return view.detour(grid_.node(node)) >= 0; });
 }
 
 /// Follows the grid with the view of a sphere, and marks the nodes that see it otherwise than before.
@@ -180,7 +177,7 @@ void Sight::look_again(Index sphere) {
   std::unique_ptr<View>& known = view_[std::size_t(sphere)];
   const Index node = grid_.node_of_sphere(sphere);
   std::unique_ptr<View> view = node < 0 ? nullptr : look_from(node);
-  if (view && known && view->node == known->node) {
+  if (view && known && view->node_ == known->node_) {
     mark_changes(known.get(), view.get());
   } else {
     if (known) mark_changes(known.get(), nullptr);
@@ -191,65 +188,56 @@ void Sight::look_again(Index sphere) {
 
 /// Marks the nodes in which two views from one node differ; null: one that sees nothing.
 void Sight::mark_changes(const View* before, const View* after) {
-  const CutGrid::Node home = grid_.node((before != nullptr ? before : after)->node);
-  for (std::size_t r = 0; r < View{}.detour.size(); ++r) {
+  const CutGrid::Node low = (before != nullptr ? before : after)->low_;
+  for (std::size_t r = 0; r < std::size_t(kSide * kSide); ++r) {
     Row other = 0;
-    for (std::size_t b = 0; b < std::size_t(View::kBits); ++b)
-      other |= (before != nullptr ? before->detour[r][b] : 0) ^ (after != nullptr ? after->detour[r][b] : 0);
+    for (std::size_t b = 0; b < std::size_t(kBits); ++b)
+      other |= (before != nullptr ? before->number_[r][b] : 0) ^ (after != nullptr ? after->number_[r][b] : 0);
     for (; other != 0; other &= other - 1)
-      mark(grid_.at({home[0] + std::countr_zero(other) - kMostHops, home[1] + Index(r) % kSide - kMostHops,
-                     home[2] + Index(r) / kSide - kMostHops}));
+      mark(grid_.at({low[0] + std::countr_zero(other), low[1] + Index(r) % kSide, low[2] + Index(r) / kSide}));
   }
+}
+
+/// For each number of edges of a way, and each row around a node, the bits of View::number_ of nodes to which such a
+/// way is short enough.
+const std::vector<Sight::Numbers>& Sight::seen_over() {
+  static const std::vector<Numbers> all = [] {
+    std::vector<Numbers> made(std::size_t(kMostHops) + 1);
+    for (Index k = 0; k < kSide; ++k)
+      for (Index j = 0; j < kSide; ++j)
+        for (Index i = 0; i < kSide; ++i) {
+          const Index shortest = shortest_way({i - kMostHops, j - kMostHops, k - kMostHops});
+          for (Index longer = 0; longer <= std::min(kGrazed + kMostDetour, kMostHops - shortest); ++longer) {
+            const Index number = 1 + std::max(0, longer - kGrazed);
+            for (int b = 0; b < kBits; ++b)
+              if (number >> b & 1)
+                made[std::size_t(shortest + longer)][std::size_t(j + kSide * k)][std::size_t(b)] |= Row(1) << i;
+          }
+        }
+    return made;
+  }();
+  return all;
 }
 
 std::unique_ptr<Sight::View> Sight::look_from(Index node) const {
   auto made = std::make_unique<View>();
   View& view = *made;
-  view.node = node;
   const CutGrid::Node home = grid_.node(node);
-  std::array<Rows, kMostHops + 1> reached{};
-  Rows visited{};
-  visited[around(0, 0)] = reached[0][around(0, 0)] = Row(1) << bit(home);
-  for (Index hops = 1; hops <= kMostHops; ++hops)
-    go_on(home, hops, reached[std::size_t(hops) - 1], visited, reached[std::size_t(hops)]);
-  static const std::vector<Shortest> shortest = shortest_ways();
-  for (std::size_t r = 0; r < view.detour.size(); ++r) {
-    const Index j = Index(r) % kSide - kMostHops, k = Index(r) / kSide - kMostHops;
-    view.detour[r] = {};
-    for (Index way = shortest_way({0, j, k}); way <= kMostHops; ++way)
-      for (Index longer = 0; longer <= std::min(kGrazed + kMostDetour, kMostHops - way); ++longer) {
-        const Row seen =
-            reached[std::size_t(way + longer)][around(j, k)] >> (bit(home) - kMostHops) & shortest[r][std::size_t(way)];
-        const Index detour = std::max(0, longer - kGrazed);
-        for (int b = 0; b < View::kBits; ++b)
-          if ((1 + detour) >> b & 1) view.detour[r][std::size_t(b)] |= seen;
+  view.node_ = node, view.low_ = {home[0] - kMostHops, home[1] - kMostHops, home[2] - kMostHops};
+  const Index shift = bit(home) - kMostHops;
+  Rows visited{}, last{}, next{};
+  visited[around(0, 0)] = last[around(0, 0)] = Row(1) << bit(home);
+  for (Index hops = 0;; ++hops) {
+    const Numbers& seen = seen_over()[std::size_t(hops)];
+    for (Index k = -hops; k <= hops; ++k)
+      for (Index j = -hops; j <= hops; ++j) {
+        const auto r = std::size_t(j + kMostHops + kSide * (k + kMostHops));
+        const Row reached = last[around(j, k)] >> shift;
+        for (std::size_t b = 0; b < seen[r].size(); ++b) view.number_[r][b] |= reached & seen[r][b];
       }
+    if (hops == kMostHops || !go_on(home, hops + 1, last, visited, next)) return made;
+    std::swap(last, next);
   }
-  return made;
-}
-
-Sight::Seen Sight::from(Index node) {
-  const CutGrid::Node home = grid_.node(node);
-  Seen seen;
-  seen.has_cut = (beside_cut_[at(window(home), home[1], home[2])] >> bit(home) & 1) != 0;
-  for (Index k = -kMostHops; k <= kMostHops; ++k)
-    for (Index j = -kMostHops; j <= kMostHops; ++j) {
-      const Row spheres = has_sphere_[at(window(home), home[1] + j, home[2] + k)] >> (bit(home) - kMostHops);
-      for (Row row = spheres & ((Row(1) << kSide) - 1); row != 0; row &= row - 1) {
-        const Index i = std::countr_zero(row) - kMostHops;
-        const Index there = grid_.at({home[0] + i, home[1] + j, home[2] + k});
-        for (const Index sphere : grid_.spheres_at(there)) {
-          // The way from the sphere is the way to it.
-          const auto& bits = view_of(sphere, there).detour[std::size_t(kMostHops - j + kSide * (kMostHops - k))];
-          Index detour = 0;
-          for (int b = 0; b < View::kBits; ++b) detour |= Index(bits[std::size_t(b)] >> (kMostHops - i) & 1) << b;
-          if (detour > 0) seen.sphere.push_back({sphere, detour - 1});
-        }
-      }
-    }
-  std::sort(seen.sphere.begin(), seen.sphere.end(),
-            [](const Seen::Sphere& a, const Seen::Sphere& b) { return a.sphere < b.sphere; });
-  return seen;
 }
 
 }  // namespace ctpm::cutbody
