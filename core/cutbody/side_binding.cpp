@@ -49,6 +49,21 @@ double smooth(double t) {
   return q * q * (3 - 2 * q);
 }
 
+/// Sums by spheres, ascending. Each is added up in the order of the calls.
+template <class Value>
+struct SumBySphere {
+  std::vector<CutGrid::Index> sphere;
+  std::vector<Value> sum;
+
+  void add(CutGrid::Index of, Value value) {
+    const auto at = std::lower_bound(sphere.begin(), sphere.end(), of);
+    const auto number = std::size_t(at - sphere.begin());
+    if (at == sphere.end() || *at != of)
+      sphere.insert(at, of), sum.insert(sum.begin() + std::ptrdiff_t(number), Value{});
+    sum[number] += value;
+  }
+};
+
 /// Harmonic sum of the three principal variances of points [m^2]: at most the least of them, and at least a third of
 /// it. `weight`: of each.
 double least_variance(std::span<const Vec3> points, std::span<const double> weight) {
@@ -87,21 +102,20 @@ class SideBinding::Mix {
   /// Adds a part of a way.
   void add(const Binding& way, double part) {
     if (part == 0) return;
-    for (std::size_t i = 0; i < way.sphere.size(); ++i) weight_[way.sphere[i]] += missing_ * part * way.weight[i];
-    for (const Binding::Turned& turned : way.turned) offset_[turned.sphere] += missing_ * part * turned.offset;
+    for (std::size_t i = 0; i < way.sphere.size(); ++i) weight_.add(way.sphere[i], missing_ * part * way.weight[i]);
+    for (const Binding::Turned& turned : way.turned) offset_.add(turned.sphere, missing_ * part * turned.offset);
     missing_ *= 1 - part;
   }
 
-  Binding binding() const {
-    Binding all;
-    for (const auto& [sphere, weight] : weight_) all.sphere.push_back(sphere), all.weight.push_back(weight);
-    for (const auto& [sphere, offset] : offset_) all.turned.push_back({sphere, offset});
+  Binding binding() && {
+    Binding all{std::move(weight_.sphere), std::move(weight_.sum), 0, {}};
+    for (std::size_t i = 0; i < offset_.sphere.size(); ++i) all.turned.push_back({offset_.sphere[i], offset_.sum[i]});
     return all;
   }
 
  private:
-  std::map<Index, double> weight_;
-  std::map<Index, Vec3> offset_;
+  SumBySphere<double> weight_;
+  SumBySphere<Vec3> offset_;
   double missing_ = 1;
 };
 
@@ -196,26 +210,14 @@ Vec3 SideBinding::place_of(const Origin& origin) const {
 
 /// Moves with the organ's own surface.
 SideBinding::Binding SideBinding::follow_whole(const Origin& origin) const {
-  struct Part {
-    Index sphere;
-    double weight;
-  };
-  std::vector<Part> parts;
+  SumBySphere<double> weight;
   const SurfaceBinding& whole = whole_.binding;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto v = std::size_t(whole_.triangle[std::size_t(origin.triangle)][i]);
     for (auto e = std::size_t(whole.first[v]); e < std::size_t(whole.first[v + 1]); ++e)
-      parts.push_back({whole.sphere[e], origin.weight[i] * whole.weight[e]});
+      weight.add(whole.sphere[e], origin.weight[i] * whole.weight[e]);
   }
-  // Those of one sphere are added up in the order of the corners.
-  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.sphere < b.sphere; });
-  Binding binding;
-  for (const Part& part : parts) {
-    if (binding.sphere.empty() || binding.sphere.back() != part.sphere)
-      binding.sphere.push_back(part.sphere), binding.weight.push_back(0);
-    binding.weight.back() += part.weight;
-  }
-  return binding;
+  return {std::move(weight.sphere), std::move(weight.sum), 0, {}};
 }
 
 /// Takes a place of a wall back to the swept surface if it is off it, as beyond the end of a cut.
@@ -288,7 +290,7 @@ void SideBinding::bind(Index side, bool is_outer, Entry& entry) {
     for (const Index piece : {piece_[std::size_t(side)], Index(-1)})
       if (!mix.is_whole()) follow_piece(bound.rest, piece, mix);
   }
-  bound.binding = mix.binding();
+  bound.binding = std::move(mix).binding();
 }
 
 /// Whether a binding follows spheres to which the place that joined_ went to is joined wholly.
@@ -365,19 +367,21 @@ SideBinding::Binding SideBinding::follow_any(Vec3 rest, Index piece) const {
 /// Its depth is the part of the nodes to which one is near.
 SideBinding::Binding SideBinding::follow_nearest(Vec3 rest) {
   constexpr double kFades = 4;  // edges
-  std::map<Index, double> weight;
+  SumBySphere<double> weight;
   double all = 0, found = 0;
   for (const JoinedSpheres::Weighted& n : joined_.weighted_nodes()) {
     const NearestSpheres::Near near = nearest_.of(n.node);
     all += n.weight;
     if (near.sphere < 0) continue;
     const double part = n.weight * smooth((NearestSpheres::kMostHops - near.hops) / kFades);
-    if (part > 0) weight[near.sphere] += part, found += part;
+    if (part > 0) weight.add(near.sphere, part), found += part;
   }
   Binding binding;
   if (!(found > 0)) return binding;
   binding.depth = found / all;
-  for (const auto& [sphere, part] : weight) {
+  for (std::size_t i = 0; i < weight.sphere.size(); ++i) {
+    const Index sphere = weight.sphere[i];
+    const double part = weight.sum[i];
     const Vec3 off = rest - model_.rest_position[std::size_t(organ_.first + sphere)];
     binding.sphere.push_back(sphere), binding.weight.push_back(part / found);
     binding.turned.push_back({sphere, part / found * off});

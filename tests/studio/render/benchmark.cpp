@@ -1,6 +1,13 @@
 // Time of one picture. Run: build/release/tests/ctpm_render_benchmark
 #include <benchmark/benchmark.h>
 
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "studio/film/bounded_queue.h"
+#include "studio/film/pipeline.h"
+#include "studio/render/cut_surface.h"
 #include "studio/render/overlay.h"
 #include "studio/video/video_writer.h"
 #include "tests/studio/render/scene.h"
@@ -63,9 +70,8 @@ void overlay_alone(benchmark::State& run) {
 }
 BENCHMARK(overlay_alone)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
-/// The split and the wall follow a blade that goes 1 mm from picture to picture.
-void picture_while_cutting(benchmark::State& run) {
-  Bench bench;
+/// A blade goes 1 mm from State to State.
+std::vector<State> growing_cut(const Bench& bench) {
   std::vector<State> growing;
   State state = bench.rest;
   for (int y = -40; y < 20; ++y) {
@@ -73,6 +79,13 @@ void picture_while_cutting(benchmark::State& run) {
     cut(bench.scene->model, state, {{0, from, 0}, {0, from, 0.1}}, {{0, to, 0}, {0, to, 0.1}});
     growing.push_back(state);
   }
+  return growing;
+}
+
+/// The split and the wall follow the blade from picture to picture.
+void picture_while_cutting(benchmark::State& run) {
+  Bench bench;
+  const std::vector<State> growing = growing_cut(bench);
   std::size_t next = growing.size();
   for (auto _ : run) {
     if (next == growing.size()) {
@@ -84,6 +97,36 @@ void picture_while_cutting(benchmark::State& run) {
   }
 }
 BENCHMARK(picture_while_cutting)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+/// The same in a film, where the thread that replays the session makes the cut's surface of the next pictures.
+void picture_of_a_film_while_cutting(benchmark::State& run) {
+  Bench bench;
+  render::Overlay overlay(1280, 720);
+  const std::vector<State> growing = growing_cut(bench);
+  for (auto _ : run) {
+    run.PauseTiming();
+    bench.renderer->draw(growing.front(), bench.options);
+    film::BoundedQueue<const State*> followed(film::kFilmQueue);
+    run.ResumeTiming();
+    std::thread replay([&] {
+      for (std::size_t i = 1; i < growing.size(); ++i) {
+        for (render::CutSurface& cut : *bench.renderer->scene().cuts) cut.follow_ahead(growing[i]);
+        followed.push(&growing[i]);
+      }
+      followed.close();
+    });
+    while (const std::optional<const State*> state = followed.pop()) {
+      render::Frame frame = bench.renderer->draw(**state, bench.options);
+      overlay.draw(frame, bench.data);
+      benchmark::DoNotOptimize(frame.rgb.data());
+    }
+    replay.join();
+  }
+  run.counters["pictures"] = double(growing.size() - 1);
+  run.counters["ms_a_picture"] = benchmark::Counter(
+      1e-3 * double(growing.size() - 1), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(picture_of_a_film_while_cutting)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 void encoded_frame(benchmark::State& run) {
   Bench bench;
