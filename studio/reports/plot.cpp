@@ -336,11 +336,14 @@ std::string to_svg(const Plot& plot) {
   const bool is_over_x = std::all_of(plot.series.begin(), plot.series.end(), [](const Series& s) {
     return has_marks_only(s) || std::is_sorted(s.x.begin(), s.x.end());
   });
+  // What is in a picture cannot be reached by those who hear a page.
+  const bool has_links = std::ranges::any_of(plot.events, [](const PlotEvent& event) { return !event.link.empty(); });
   svg = "<svg data-x=\"" + drawing.x.describe() + "\" data-y=\"" + drawing.y.describe() + "\" data-along=\"" +
         (is_over_x ? "x" : "") + "\" data-titles=\"" + escape_html(plot.x_title + "|" + plot.y_title) +
         "\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + std::to_string(plot.width) + " " +
         std::to_string(whole_height) + "\" width=\"" + std::to_string(plot.width) + "\" height=\"" +
-        std::to_string(whole_height) + "\" role=\"img\">\n<title>" + escape_html(plot.title) + "</title>\n";
+        std::to_string(whole_height) + "\" role=\"" + (has_links ? "group" : "img") + "\">\n<title>" +
+        escape_html(plot.title) + "</title>\n";
   svg += "<clipPath id=\"" + clip + "\"><rect x=\"" + number(left) + "\" y=\"" + number(top - 5) + "\" width=\"" +
          number(right - left + 5) + "\" height=\"" + number(bottom - top + 10) + "\"/></clipPath>\n";
   drawing.add_axes();

@@ -49,13 +49,11 @@ function ended(server) {
   return new Promise((resolve) => server.once("exit", resolve));
 }
 
-/** Serves `folder` and opens its page. */
-export async function openStudio(folder, port = 0, ...more) {
-  let { server, address } = await serve(folder, port, more);
+/** Opens a browser with an empty page; what goes wrong in it is added to `complaints`. */
+export async function openBrowser(options = {}) {
   const profile = mkdtempSync(join(tmpdir(), "ctpm-profile-"));
   const context = await chromium.launchPersistentContext(profile, {
-    executablePath: "/usr/bin/chromium", headless: true, viewport: { width: 1280, height: 720 }, args: kFlags,
-    ignoreHTTPSErrors: more.includes("--behind"), // a certificate of the test's own
+    executablePath: "/usr/bin/chromium", headless: true, viewport: { width: 1280, height: 720 }, args: kFlags, ...options,
   });
   context.setDefaultTimeout(Number(process.env.CTPM_WAIT ?? 150000));
   const page = context.pages()[0];
@@ -63,6 +61,19 @@ export async function openStudio(folder, port = 0, ...more) {
   page.on("pageerror", (error) => complaints.push(error.message));
   page.on("console", (message) => {
     if (message.type() === "error") complaints.push(message.text());
+  });
+  const close = async () => {
+    await context.close();
+    rmSync(profile, { recursive: true, force: true });
+  };
+  return { context, page, complaints, close };
+}
+
+/** Serves `folder` and opens its page. */
+export async function openStudio(folder, port = 0, ...more) {
+  let { server, address } = await serve(folder, port, more);
+  const { context, page, complaints, close: closeBrowser } = await openBrowser({
+    ignoreHTTPSErrors: more.includes("--behind"), // a certificate of the test's own
   });
   page.on("dialog", (dialog) => complaints.push(`dialog: ${dialog.message()}`));
   let sent = null; // the hand that the page sent last
@@ -72,12 +83,10 @@ export async function openStudio(folder, port = 0, ...more) {
   await page.goto(address);
   await page.waitForSelector("header nav button");
   const close = async () => {
-    await context.close();
+    await closeBrowser();
     const end = ended(server);
     server.kill("SIGINT");
-    const code = await end;
-    rmSync(profile, { recursive: true, force: true });
-    return code;
+    return end;
   };
   /** Kills the server as a crash would. */
   const kill = async () => {
