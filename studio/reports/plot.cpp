@@ -413,8 +413,11 @@ for (const svg of document.querySelectorAll("svg[data-x]")) {
     const texts = rows.map(([text, ink]) => { const t = make("text", { fill: ink }, cursor); t.textContent = text; t.style.fill = ink; return t; });
     const width = 16 + Math.max(...texts.map(t => t.getComputedTextLength())), high = 1.35 * parseFloat(getComputedStyle(texts[0]).fontSize);
     const left = x.to > at + 10 + width ? at + 10 : Math.max(2, at - 10 - width);
-    texts.forEach((t, i) => { t.setAttribute("x", left + 8); t.setAttribute("y", y.to + 8 + high * (i + 0.8)); });
-    for (const [k, v] of Object.entries({ x: left, y: y.to + 4, width, height: high * rows.length + 8 })) box.setAttribute(k, v);
+    const height = high * rows.length + 8;
+    const hidden = from => found.filter(one => one.p[0] > left - 4 && left + width + 4 > one.p[0] && one.p[1] > from - 4 && from + height + 4 > one.p[1]).length;
+    const [above, below] = [y.to + 4, y.from - 4 - height], top = hidden(above) > hidden(below) ? below : above;
+    texts.forEach((t, i) => { t.setAttribute("x", left + 8); t.setAttribute("y", top + 4 + high * (i + 0.8)); });
+    for (const [k, v] of Object.entries({ x: left, y: top, width, height })) box.setAttribute(k, v);
   };
   for (const kind of ["pointermove", "pointerdown"]) svg.addEventListener(kind, show);
   svg.addEventListener("pointerleave", () => cursor.replaceChildren());
