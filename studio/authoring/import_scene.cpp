@@ -251,7 +251,10 @@ class Import {
       }
       const bool is_alone = filled.size() == 1 && !request_.into;
       const std::string from_mesh = fs::path(request_.mesh).stem().string();
-      const std::string name = is_alone ? stem_ : file_name_of(is_one_of_file ? part_name : from_mesh);
+      // The only organ is called what its author says that it is, else as the scene.
+      const bool is_said = !request_.organ.empty() && request_.organ != scenes::kGenericPreset;
+      const std::string alone = is_said ? file_name_of(request_.organ) : stem_;
+      const std::string name = is_alone ? alone : file_name_of(is_one_of_file ? part_name : from_mesh);
       draft.part.name = free_name(name, names);
       names.push_back(draft.part.name);
       const std::string mesh = (is_alone ? stem_ : stem_ + "-" + file_name_of(draft.part.name)) + ".obj";
@@ -294,7 +297,7 @@ class Import {
   /// A scene of one organ alone.
   scenes::SceneSpec alone(const Draft& draft) const {
     scenes::SceneSpec scene;
-    scene.name = draft.spec.name;
+    scene.name = scene_.name;
     scene.gravity = scene_.gravity, scene.tick = scene_.tick, scene.settle = scene_.settle;
     scene.solver = scene_.solver;
     scene.organs = {draft.spec};

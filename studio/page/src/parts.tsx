@@ -3,7 +3,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { CallFailed, problemText } from "./protocol";
 
 /** Numbers in a column, each with its unit. */
-export function Readings({ rows }: { rows: [string, string][] }) {
+export function Readings({ rows }: { rows: [string, ComponentChildren][] }) {
   return (
     <dl class="readings">
       {rows.map(([name, value]) => (

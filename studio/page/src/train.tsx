@@ -234,7 +234,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
               <input value={output} disabled={phase === "loading"} onInput={(e) => setOutput(e.currentTarget.value)} />
             </label>
             <DeviceForm choice={device} onChoice={setDevice} isDisabled={phase === "loading"} />
-            <ExpertChoice listing={listing} expert={expert} onExpert={setExpert} />
+            <ExpertChoice listing={listing.sessions} expert={expert} onExpert={setExpert} use="shown as a ghost" />
             {device.how && output && <ShownCommand text={command("record", scene || "SCENE.json", "-o", output, ...deviceWords(device))} />}
             {phase === "loading" && <button type="button" onClick={() => loading.current?.abort()}>Cancel</button>}
           </Section>
@@ -259,7 +259,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
               ]} />
             </Section>
             <Section title="Expert">
-              <ExpertChoice listing={listing} expert={expert} onExpert={setExpert} />
+              <ExpertChoice listing={listing.sessions} expert={expert} onExpert={setExpert} use="shown as a ghost" />
               {expert && trainer && (
                 <label class="field">
                   <span>the ghost is</span>
@@ -288,13 +288,13 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
   );
 }
 
-function ExpertChoice({ listing, expert, onExpert }: { listing: Listing; expert: string; onExpert: (path: string) => void }) {
+function ExpertChoice({ listing, expert, onExpert, use }: { listing: Listing["sessions"]; expert: string; onExpert: (path: string) => void; use: string }) {
   return (
     <label class="field">
-      <span>the expert's session, shown as a ghost</span>
+      <span>the expert's session, {use}</span>
       <select value={expert} onChange={(e) => onExpert(e.currentTarget.value)}>
         <option value="">none</option>
-        {listing.sessions.map((s) => <option key={s.path} value={s.path}>{s.path}</option>)}
+        {listing.map((s) => <option key={s.path} value={s.path}>{s.path}</option>)}
       </select>
     </label>
   );
@@ -315,6 +315,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
   const [progress, setProgress] = useState<[number, number] | null>(null);
   const [error, setError] = useState<Error | null>(null);
 
+  const others = listing.sessions.filter((session) => session.path !== ended.path);
   const compare = async () => {
     const progress = (done: number, total: number) => setProgress([done, total]);
     setError(null), setComparison(null), setVerdict(null), progress(0, 1);
@@ -352,7 +353,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
       </Section>
       {ended.path && (
         <Section title="Verify and compare">
-          <ExpertChoice listing={listing} expert={expert} onExpert={onExpert} />
+          <ExpertChoice listing={others} expert={expert} onExpert={onExpert} use="to compare with" />
           {progress ? <Working what={verdict ? "comparing" : "verifying"} done={progress[0]} total={progress[1]} />
             : <button type="button" class="main" onClick={() => void compare()}>{expert ? "Verify and compare" : "Verify"}</button>}
           {verdict && <p class={verdict.same ? "good" : "warning"} role="status">{verdict.text}</p>}
