@@ -128,7 +128,7 @@ std::int64_t ticks_to_next_keyframe(const State& state) {
   const std::size_t moving = 24 * (state.position.size() + state.velocity.size() + state.acceleration.size()) +
                              8 * (state.kelvin_elongation.size() + state.kelvin_dent.size());
   const double bytes = kMoving * double(moving) + kSwept * 25 * double(state.swept.size());
-  return std::clamp<std::int64_t>(std::llround(bytes / kBytesPerTick), 250, 1000);
+  return std::clamp<std::int64_t>(50 * std::llround(std::ceil(bytes / kBytesPerTick / 50)), 250, 1000);
 }
 
 // ---- the tick's thread ----

@@ -78,6 +78,7 @@ std::shared_ptr<const DrawnCut> DrawnCuts::of(const State& state) const {
 }
 
 std::shared_ptr<const DrawnCut> DrawnCuts::nearest(const State& state) const {
+  if (auto same = of(state)) return same;
   const std::lock_guard lock(mutex_);
   std::shared_ptr<const DrawnCut> best;
   for (const auto* kept : {&recent_, &for_good_})
