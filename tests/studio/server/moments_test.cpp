@@ -11,12 +11,15 @@
 #include "studio/server/cuts_ahead.h"
 #include "studio/server/glimpse.h"
 #include "studio/server/moments.h"
+#include "studio/server/spare_cursors.h"
 #include "studio/server/urgency.h"
 
 namespace ctpm::server {
 namespace {
 
 const std::string kCut = std::string(CTPM_SHIPPED_SESSIONS) + "/kidney-cut-expert.ctpm";
+
+const std::string kTwoCuts = std::string(CTPM_SHIPPED_SESSIONS) + "/kidney-cut-clumsy.ctpm";
 
 /// Waits for a thread of low priority.
 void wait_until(const std::function<bool()>& is_so) {
@@ -96,6 +99,30 @@ TEST(Moments, NothingIsReplayedAheadWhileATrainingRunsOrSomebodyWaits) {
   EXPECT_TRUE(stays(0));
   (*moments)->rest(Moments::Rest::none);
   wait_until([&] { return (*moments)->share() > 0; });
+}
+
+TEST(SpareCursors, OneIsReadyAtEachCutThatStaysAndGoesOnAsAnyOther) {
+  auto reader = recordings::SessionReader::open(kTwoCuts);
+  ASSERT_TRUE(reader);
+  SpareCursors spares(*reader);
+  wait_until([&] { return spares.is_done(); });
+  const std::size_t made = spares.count();
+  EXPECT_GE(made, 2u);  // the first cut stays until the second one begins
+  EXPECT_LE(made, SpareCursors::kMost);
+  EXPECT_FALSE(spares.take(reader->start().initial_state));  // whole tissue has nothing to build
+  const std::vector<std::int64_t> keyframes = *reader->keyframe_ticks();
+  std::size_t taken = 0;
+  for (const std::int64_t tick : keyframes) {
+    const State state = reader->keyframe_at_or_before(tick)->state;
+    std::optional<recordings::ReplayCursor> spare = spares.take(state);
+    if (!spare) continue;
+    ++taken;
+    spare->resume(tick, state);
+    for (int i = 0; i < 20 && spare->tick() < reader->tick_count(); ++i) ASSERT_TRUE(spare->step());
+    EXPECT_TRUE(spare->same_so_far()) << "keyframe " << tick;
+    EXPECT_FALSE(spares.take(state)) << "each is taken once";
+  }
+  EXPECT_EQ(taken, made);
 }
 
 TEST(CutsAhead, EveryKeyframesCutIsDrawnAndAGlimpseHasTheLargestPartOfItsOwn) {
