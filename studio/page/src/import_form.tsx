@@ -88,7 +88,7 @@ async function addOrgan(connection: Connection, open: AuthorScene, imported: Imp
   const { name, mesh, at_mm: _, ...rest } = organ;
   const values: [JSONPath, Json][] = [[["organs", organs.length], { name: freeName(organs, String(name)), mesh, at_mm: mmVector(at), ...rest }]];
   const cameras = listOf(doc.value, "cameras");
-  if (view && cameras.length === 1 && cameras[0].name === kImportsCamera) {
+  if (view && cameras[0]?.name === kImportsCamera) {
     const box = new three.Box3(new three.Vector3(...imported.least), new three.Vector3(...imported.most)).translate(at);
     const all = box.clone().expandByPoint(new three.Vector3(...view.least)).expandByPoint(new three.Vector3(...view.most));
     const camera = movedCamera(view.cameras[0], [view.least, view.most], [all.min.toArray() as Vector, all.max.toArray() as Vector]);

@@ -264,6 +264,25 @@ test("two sessions beside each other, compared", async () => {
   await picture(page, "review-compare");
 });
 
+test("it is said whose session is whose, and they can be swapped at the same moment of both", async () => {
+  const whose = async () => (await page.locator(".captions b").allInnerTexts()).map((text) => text.replace(/ [-\d.]+ s$/, ""));
+  assert.deepEqual(await whose(), [`expert: ${kExpert}`, `trainee: ${kClumsy}`]);
+  await page.click("#panel button:has-text('first cut')");
+  const times = async () => (await page.locator(".captions b").allInnerTexts()).map((text) => Number(/([-\d.]+) s$/.exec(text)[1]));
+  const before = await times();
+  const swapped = async (first, second) => {
+    await page.click("#panel button:has-text('Swap')");
+    await page.waitForFunction((text) => document.querySelector(".captions .first")?.textContent.includes(text) && document.querySelector(".captions .second"), first);
+    await page.waitForSelector("#panel button[aria-pressed=true]:text-is('first cut')");
+    assert.deepEqual(await whose(), [`expert: ${first}`, `trainee: ${second}`]);
+    assert.equal(await page.locator("#panel .command code").first().innerText(), `ctpm compare ${first} ${second} -o report`);
+  };
+  await swapped(kClumsy, kExpert);
+  assert.deepEqual(await times(), [before[1], before[0]]);
+  await swapped(kExpert, kClumsy);
+  assert.deepEqual(await times(), before);
+});
+
 test("along the path both tools are at the same place of it, and by hand as far apart in time as one says", async () => {
   const scrubTo = async (time) => {
     await page.locator(".scrub").evaluate((slider, value) => {
