@@ -67,6 +67,8 @@ export interface OrganView {
   inner: Vector;
   wetness: number;
   layer_colours: Vector[]; // sRGB, outermost first
+  least: Vector; // the box around its spheres at rest
+  most: Vector;
 }
 
 export interface ToolView {

@@ -391,6 +391,7 @@ test("a second mesh becomes an organ of the scene, which is moved by its handle"
   assert.ok(far(cameras[0]) > 1.2 * far(was) && cameras[0].target_mm[0] > was.target_mm[0] + 10, JSON.stringify(cameras));
   const canvas = await page.locator(".view > canvas").boundingBox();
   for (const name of ["kidney", "kidney-2"]) {
+    await page.locator(".objects button", { has: page.locator(`span:text-is("${name}")`) }).click();
     const { x, y } = await centreOf(handle(name));
     assert.ok(x > canvas.x + 20 && x < canvas.x + canvas.width - 20 && y > canvas.y + 20 && y < canvas.y + canvas.height - 20, `${name}: ${x}, ${y}`);
   }
