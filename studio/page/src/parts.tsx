@@ -49,6 +49,22 @@ export function ShownCommand({ text }: { text: string }) {
   );
 }
 
+const kRepeat = 60; // of what a held button does [ms]
+
+/** A button that does something as long as it is held, for hands without keys. */
+export function HeldButton({ text, onHeld }: { text: string; onHeld: () => void }) {
+  const timer = useRef<ReturnType<typeof setInterval>>();
+  const stop = () => clearInterval(timer.current);
+  useEffect(() => stop, []);
+  return (
+    <button type="button" onPointerDown={(e) => {
+      e.currentTarget.setPointerCapture(e.pointerId);
+      stop(), onHeld();
+      timer.current = setInterval(onHeld, kRepeat);
+    }} onPointerUp={stop} onPointerCancel={stop} onContextMenu={(e) => e.preventDefault()} onClick={(e) => e.detail === 0 && onHeld()}>{text}</button>
+  );
+}
+
 /** Work that goes on: how far it is, and how to end it. */
 export function Working({ what, done, total, onCancel }: { what: string; done: number; total: number; onCancel?: () => void }) {
   const share = total > 0 ? done / total : 0;

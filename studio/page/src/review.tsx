@@ -183,7 +183,7 @@ export function Review({ connection, listing, place, onPlace }: {
         <ul>
           {listing.sessions.map((entry) => (
             <li key={entry.path}>
-              <button type="button" aria-current={first?.session.path === entry.path} onClick={() => void open(0, entry.path)}>
+              <button type="button" aria-current={first?.session.path === entry.path} title={entry.path} onClick={() => void open(0, entry.path)}>
                 <span>{entry.path.replace(/\.ctpm$/, "")}</span>
                 <small>{bytes(entry.bytes)}</small>
               </button>

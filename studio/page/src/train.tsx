@@ -3,13 +3,16 @@ import { Result } from "./compare";
 import type { Connection } from "./connection";
 import { DeviceForm } from "./device";
 import { deviceParameters, deviceWords, storedDevice, storeDevice } from "./device_choice";
-import { Empty, Problems, Readings, Section, ShownCommand, Working } from "./parts";
+import { Empty, HeldButton, Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { type ComparisonResult, type EndedTraining, type Listing, type Motion, problemText } from "./protocol";
 import { behind, command, millimetres, newtons, seconds } from "./text";
 import type { Place } from "./place";
 import { ForceSound } from "./sound";
 import { kGhostAhead, Trainer } from "./trainer";
 import { Viewer } from "./viewer";
+
+/** What keys do, for hands that have none. */
+const kHeld: [string, string][] = [["farther", "PageUp"], ["closer", "PageDown"], ["turn left", "q"], ["turn right", "e"], ["tip up", "w"], ["tip down", "s"]];
 
 type Phase = "choose" | "loading" | "running" | "ended";
 
@@ -38,6 +41,8 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
   const [error, setError] = useState<Error | null>(null);
   const [, setTick] = useState(0);
   const last = useRef<{ x: number; y: number } | null>(null);
+  const [isTouch, setTouch] = useState(() => matchMedia("(pointer: coarse)").matches);
+  const fingers = useRef(new Set<number>());
   const loading = useRef<AbortController | null>(null);
   const sound = useRef(new ForceSound());
 
@@ -122,9 +127,22 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
     return () => target.removeEventListener("wheel", wheel);
   }, [trainer, phase]);
 
+  // One finger moves the tool; two look around, and are not followed.
+  useEffect(() => {
+    const count = (event: PointerEvent) => {
+      if (event.pointerType !== "touch") return;
+      if (event.type === "pointerdown") fingers.current.add(event.pointerId), setTouch(true);
+      else fingers.current.delete(event.pointerId);
+      last.current = null;
+    };
+    const kinds = ["pointerdown", "pointerup", "pointercancel"] as const;
+    for (const kind of kinds) addEventListener(kind, count);
+    return () => kinds.forEach((kind) => removeEventListener(kind, count));
+  }, []);
+
   const move = (event: PointerEvent) => {
     if (phase !== "running" || trainer?.awaited || (event.buttons & 2) !== 0) return;
-    if (event.pointerType === "touch" && event.buttons === 0) return;
+    if (event.pointerType === "touch" && (event.buttons === 0 || fingers.current.size > 1)) return;
     // A pointer that comes from elsewhere does not carry the hand along.
     const from = last.current;
     last.current = { x: event.clientX, y: event.clientY };
@@ -166,7 +184,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
         <ul>
           {listing.scenes.map((entry) => (
             <li key={entry.path}>
-              <button type="button" aria-current={scene === entry.path} disabled={phase === "running" || phase === "loading"} onClick={() => void begin(entry.path)}>
+              <button type="button" aria-current={scene === entry.path} title={entry.path} disabled={phase === "running" || phase === "loading"} onClick={() => void begin(entry.path)}>
                 <span>{entry.path.replace(/\.json$/, "")}</span>
               </button>
             </li>
@@ -221,8 +239,13 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
                 ))}
               </div>
             )}
+            {!trainer.awaited && isTouch && (
+              <div class="buttons" role="group" aria-label="Depth and turning">
+                {kHeld.map(([text, key]) => <HeldButton key={key} text={text} onHeld={() => trainer.press(key, false)} />)}
+              </div>
+            )}
             <output class="clock">{seconds(frame?.time ?? 0, 1)}</output>
-            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}mouse, arrows: move · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · Esc: end</span>}
+            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}{isTouch ? "one finger: move · two: look around · " : ""}mouse, arrows: move · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · Esc: end</span>}
           </div>
         )}
       </div>

@@ -112,6 +112,7 @@ export class Trainer {
     const { controls } = this.viewer;
     controls.enableZoom = this.awaited !== "";
     controls.mouseButtons.LEFT = this.awaited ? three.MOUSE.ROTATE : null;
+    controls.touches = { ONE: this.awaited ? three.TOUCH.ROTATE : null, TWO: three.TOUCH.DOLLY_ROTATE };
     this.view = begun.view;
     this.scene = new StageScene(begun.view);
     this.scene.onFrame = (frame) => this.showGhost(frame);
