@@ -14,6 +14,15 @@ import { Viewer } from "./viewer";
 /** What keys do, for hands that have none. */
 const kHeld: [string, string][] = [["farther", "PageUp"], ["closer", "PageDown"], ["turn left", "q"], ["turn right", "e"], ["tip up", "w"], ["tip down", "s"]];
 
+const kNumbers = 50, kNumbersBeside = 200; // from one reading to the next; where the processor draws pictures beside them [ms]
+const kForceLimit = 10; // of a scene that has none [N]
+
+/** Moves the bar of the force with each picture: it is scaled, so that nothing is laid out anew. */
+function showForce(bar: HTMLElement | null, trainer: Trainer): void {
+  const force = Math.hypot(...(trainer.ownFrame?.force ?? [0]));
+  bar?.style.setProperty("transform", `scaleY(${Math.min(1, force / (trainer.scene?.view.damage_force_n || kForceLimit))})`);
+}
+
 type Phase = "choose" | "loading" | "running" | "ended";
 
 /** A name for a session that does not exist yet: mine-1.ctpm ... */
@@ -42,7 +51,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
   const [, setTick] = useState(0);
   const last = useRef<{ x: number; y: number } | null>(null);
   const [isTouch, setTouch] = useState(() => matchMedia("(pointer: coarse)").matches);
-  const fingers = useRef(new Set<number>());
+  const fingers = useRef(new Set<number>()), bar = useRef<HTMLDivElement>(null);
   const loading = useRef<AbortController | null>(null);
   const sound = useRef(new ForceSound());
 
@@ -54,8 +63,10 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
     viewer.controls.mouseButtons = { LEFT: null, MIDDLE: null, RIGHT: 0 };
     const made = new Trainer(connection, viewer);
     let last = 0;
+    const interval = viewer.isByProcessor ? kNumbersBeside : kNumbers;
     made.onFrame = () => {
-      if (performance.now() - last < 50) return;
+      showForce(bar.current, made);
+      if (performance.now() - last < interval) return;
       last = performance.now();
       setTick((t) => t + 1);
     };
@@ -173,7 +184,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
   const frame = trainer?.scene?.frame ?? null, view = trainer?.scene?.view ?? null;
   const hands = frame?.second ? [frame, frame.second] : frame ? [frame] : [];
   const force = Math.hypot(...(trainer?.ownFrame?.force ?? [0]));
-  const limit = view?.damage_force_n || 10;
+  const limit = view?.damage_force_n || kForceLimit;
   sound.current.sound(force / limit);
 
   return (
@@ -211,7 +222,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
         )}
         {phase === "running" && frame && (
           <div class="force-bar" role="meter" aria-label="Force" aria-valuemin={0} aria-valuemax={limit} aria-valuenow={Number(force.toFixed(2))}>
-            <div style={{ height: `${Math.min(100, (100 * force) / limit)}%` }} class={force > limit ? "over" : ""} />
+            <div ref={bar} class={force > limit ? "over" : ""} />
             <output>{newtons(force)}</output>
           </div>
         )}
@@ -239,13 +250,13 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
                 ))}
               </div>
             )}
+            <output class="clock">{seconds(frame?.time ?? 0, 1)}</output>
             {!trainer.awaited && isTouch && (
-              <div class="buttons" role="group" aria-label="Depth and turning">
+              <div class="buttons held" role="group" aria-label="Depth and turning">
                 {kHeld.map(([text, key]) => <HeldButton key={key} text={text} onHeld={() => trainer.press(key, false)} />)}
               </div>
             )}
-            <output class="clock">{seconds(frame?.time ?? 0, 1)}</output>
-            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}{isTouch ? "one finger: move · two: look around · " : ""}mouse, arrows: move · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · Esc: end</span>}
+            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}{isTouch ? "one finger: move · two: look around" : "mouse, arrows: move · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · Esc: end"}</span>}
           </div>
         )}
       </div>

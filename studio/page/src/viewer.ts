@@ -70,6 +70,11 @@ export class Viewer {
     this.observer.observe(canvas);
   }
 
+  /** Whether the browser draws with the processor, so that everything else on the page costs pictures. */
+  get isByProcessor(): boolean {
+    return this.quality.isByProcessor;
+  }
+
   set(stage: number, scene: StageScene | null): void {
     this.stages.get(stage)?.dispose();
     if (scene) this.stages.set(stage, scene);
