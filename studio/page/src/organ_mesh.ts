@@ -1,5 +1,5 @@
 import * as three from "three";
-import type { OrganTriangles, OrganView } from "./protocol";
+import { kCopiesNormal, kCorrectionSteps, type OrganTriangles, type OrganView } from "./protocol";
 
 /** sRGB as linear light. */
 function linear(c: number): number {
@@ -142,10 +142,31 @@ export class OrganMesh {
       n[b] += x, n[b + 1] += y, n[b + 2] += z;
       n[c] += x, n[c + 1] += y, n[c + 2] += z;
     }
-    for (let v = 0; v < n.length; v += 3) {
-      const length = Math.sqrt(n[v] * n[v] + n[v + 1] * n[v + 1] + n[v + 2] * n[v + 2]) || 1; // hypot is many times slower
-      n[v] /= length, n[v + 1] /= length, n[v + 2] /= length;
+    for (let v = 0; v < n.length; v += 3) this.setNormal(v, n[v], n[v + 1], n[v + 2]);
+    this.correctNormals();
+  }
+
+  /** The normals of a cut organ as those of the whole one are, whose triangles are others; as in videos. */
+  private correctNormals(): void {
+    const { position: p, normal: n } = this, { neighbour, along, across } = this.triangles.corrections;
+    for (let v = 0; v < neighbour.length; ++v) {
+      if (neighbour[v] >= kCopiesNormal || (along[v] === 0 && across[v] === 0)) continue;
+      const a = 3 * v, b = 3 * neighbour[v], nx = n[a], ny = n[a + 1], nz = n[a + 2];
+      let x = p[b] - p[a], y = p[b + 1] - p[a + 1], z = p[b + 2] - p[a + 2];
+      const out = x * nx + y * ny + z * nz;
+      x -= out * nx, y -= out * ny, z -= out * nz;
+      const length = Math.sqrt(x * x + y * y + z * z) * kCorrectionSteps;
+      if (length === 0) continue;
+      const f = along[v] / length, g = across[v] / length;
+      this.setNormal(a, nx + f * x + g * (ny * z - nz * y), ny + f * y + g * (nz * x - nx * z), nz + f * z + g * (nx * y - ny * x));
     }
+    for (let v = 0; v < neighbour.length; ++v)
+      if (neighbour[v] >= kCopiesNormal) n.copyWithin(3 * v, 3 * (neighbour[v] - kCopiesNormal), 3 * (neighbour[v] - kCopiesNormal) + 3);
+  }
+
+  private setNormal(at: number, x: number, y: number, z: number): void {
+    const { normal: n } = this, length = Math.sqrt(x * x + y * y + z * z) || 1; // hypot is many times slower
+    n[at] = x / length, n[at + 1] = y / length, n[at + 2] = z / length;
   }
 
   /** Colours by vertex: stained tissue outside, darker in hollows; the inside's colour on the walls of cuts. */
