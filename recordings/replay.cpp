@@ -87,6 +87,11 @@ void ReplayCursor::resume(std::int64_t tick, const State& state) {
   impl_->same = true;
 }
 
+void ReplayCursor::prepare() {
+  State trial = impl_->state;
+  impl_->stepper.step(trial, trial.last_inputs);
+}
+
 Result<bool> ReplayCursor::step() {
   Impl& impl = *impl_;
   const std::int64_t count = impl.reader.tick_count();

@@ -26,6 +26,10 @@ class ReplayCursor {
   /// Moves to `state`, the State before `tick` that a cursor of the same session had.
   void resume(std::int64_t tick, const State& state);
 
+  /// Builds at once what the next step would have to build of the State, which may take tenths of a second after cuts.
+  /// Reads nothing.
+  void prepare();
+
   /// Simulates one tick. Returns false at the end of the session. Error: the tick's chunk is damaged.
   Result<bool> step();
 

@@ -5,9 +5,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstring>
 #include <mutex>
@@ -50,7 +52,8 @@ struct SessionWriter::Impl {
       : options(options_),
         hands(start.model.hands),
         records(options_.queue_ticks, TickRecord{}),
-        keyframes(keyframe_slots, Keyframe{0, start.initial_state}) {}
+        keyframes(keyframe_slots, Keyframe{0, start.initial_state}),
+        next_keyframe(ticks_between(start.initial_state)) {}
   ~Impl() {
     stop();
     (void)tables.close();  // so that one file remains, which says that it is whole
@@ -75,6 +78,7 @@ struct SessionWriter::Impl {
   std::atomic<bool> stopping{false}, saved_all{false};
 
   // The tick's thread only.
+  std::int64_t next_keyframe;
   std::vector<Event> own_events;
   std::vector<NamedValue> values;
 
@@ -97,6 +101,9 @@ struct SessionWriter::Impl {
   bool sync_wanted = false, sync_stops = false;
   std::thread writer, syncer;
 
+  std::int64_t ticks_between(const State& state) const {
+    return options.keyframe_ticks > 0 ? options.keyframe_ticks : ticks_to_next_keyframe(state);
+  }
   template <class T>
   T* free_slot(Ring<T>& ring);
   Result<Done> begin();
@@ -115,6 +122,15 @@ struct SessionWriter::Impl {
   void clear_error();
 };
 
+std::int64_t ticks_to_next_keyframe(const State& state) {
+  constexpr double kMoving = 0.77, kSwept = 0.06;  // of their bytes that compression leaves
+  constexpr double kBytesPerTick = 112;            // 6.7 MB a minute at 1 kHz
+  const std::size_t moving = 24 * (state.position.size() + state.velocity.size() + state.acceleration.size()) +
+                             8 * (state.kelvin_elongation.size() + state.kelvin_dent.size());
+  const double bytes = kMoving * double(moving) + kSwept * 25 * double(state.swept.size());
+  return std::clamp<std::int64_t>(50 * std::llround(std::ceil(bytes / kBytesPerTick / 50)), 250, 1000);
+}
+
 // ---- the tick's thread ----
 
 SessionWriter::SessionWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -124,7 +140,7 @@ SessionWriter::~SessionWriter() = default;
 
 Result<SessionWriter> SessionWriter::create(const std::string& path, const SessionStart& start,
                                             const WriterOptions& options) {
-  CTPM_CHECK(options.keyframe_ticks >= 1 && options.queue_ticks >= 2 * chunk_ticks, "WriterOptions out of range");
+  CTPM_CHECK(options.keyframe_ticks >= 0 && options.queue_ticks >= 2 * chunk_ticks, "WriterOptions out of range");
   CTPM_CHECK(options.compression_level >= 1 && options.compression_level <= 19, "WriterOptions out of range");
   Errors errors = check_model(start.model);
   if (errors.empty()) errors = check_state(start.model, start.initial_state);
@@ -171,7 +187,8 @@ void SessionWriter::append(const State& after, const TickRecord& record) {
   impl.appended.store(done, std::memory_order_release);
 
   // Keyframes are optional: skip this one if no slot is free.
-  if (done % impl.options.keyframe_ticks == 0) {
+  if (done == impl.next_keyframe) {
+    impl.next_keyframe += impl.ticks_between(after);
     if (Keyframe* keyframe = impl.free_slot(impl.keyframes)) {
       keyframe->tick = done;
       keyframe->state = after;

@@ -13,10 +13,14 @@ namespace ctpm::recordings {
 struct WriterOptions {
   bool overwrite = false;              ///< replaces an existing file; false: an existing file is an error
   bool wait_when_full = false;         ///< append() waits for the disk instead of losing ticks; for offline runs
-  std::int32_t keyframe_ticks = 1000;  ///< ticks between keyframes, >= 1; a seek simulates at most this many
+  std::int32_t keyframe_ticks = 0;     ///< ticks between keyframes; 0: ticks_to_next_keyframe()
   std::int32_t queue_ticks = 1 << 16;  ///< queue capacity [ticks], >= 200; ticks beyond it are lost
   int compression_level = 3;           ///< zstd, in [1, 19]
 };
+
+/// How many ticks after the keyframe of `state` the next one follows, which is as many as a seek simulates at most: 250
+/// to 1,000 in steps of 50, so that the keyframes of most scenes take 7 MB a minute or less.
+std::int64_t ticks_to_next_keyframe(const State& state);
 
 /// State of the recording. `error` is empty while recording works.
 struct WriterStatus {

@@ -234,6 +234,7 @@ class Import {
                      std::vector<importers::ImportedOrgan> filled) {
     drafts_.clear();
     std::vector<std::string> names;
+    const std::string from_mesh = fs::path(request_.mesh).stem().string();
     const Vec3 at = place_of(filled);
     for (const scenes::OrganSpec& organ : scene_.organs) names.push_back(organ.name);
     for (std::size_t i = 0; i < filled.size(); ++i) {
@@ -245,14 +246,13 @@ class Import {
       draft.tissue = whole;
       const bool is_one_of_file = filled.size() > 1 || !request_.names.empty();
       if (request_.organ.empty() && is_one_of_file) {
-        const Result<Tissue> own = choose_tissue(place_, "", {part_name, fs::path(request_.mesh).stem().string()});
+        const Result<Tissue> own = choose_tissue(place_, "", {part_name, from_mesh});
         if (!own) return own.errors();
         draft.tissue = *own;
       }
       const bool is_alone = filled.size() == 1 && !request_.into;
-      const std::string from_mesh = fs::path(request_.mesh).stem().string();
-      const std::string name = is_alone ? stem_ : file_name_of(is_one_of_file ? part_name : from_mesh);
-      draft.part.name = free_name(name, names);
+      const std::string apart = file_name_of(is_one_of_file ? part_name : from_mesh);
+      draft.part.name = free_name(is_alone ? name_alone(request_.organ, stem_) : apart, names);
       names.push_back(draft.part.name);
       const std::string mesh = (is_alone ? stem_ : stem_ + "-" + file_name_of(draft.part.name)) + ".obj";
       draft.part.mesh_file = beside(mesh);
@@ -294,7 +294,7 @@ class Import {
   /// A scene of one organ alone.
   scenes::SceneSpec alone(const Draft& draft) const {
     scenes::SceneSpec scene;
-    scene.name = draft.spec.name;
+    scene.name = scene_.name;
     scene.gravity = scene_.gravity, scene.tick = scene_.tick, scene.settle = scene_.settle;
     scene.solver = scene_.solver;
     scene.organs = {draft.spec};

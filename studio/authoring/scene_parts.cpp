@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "scenes/presets.h"
 #include "studio/render/scene_view.h"
 
 namespace ctpm::authoring {
@@ -113,6 +114,10 @@ std::string file_name_of(const std::string& name) {
   std::string safe;
   for (const char c : name) safe += std::isalnum((unsigned char)c) || c == '-' || c == '_' ? c : '-';
   return safe.substr(0, 60);
+}
+
+std::string name_alone(const std::string& tissue, const std::string& scene) {
+  return tissue.empty() || tissue == scenes::kGenericPreset ? scene : file_name_of(tissue);
 }
 
 std::string free_name(std::string name, const std::vector<std::string>& taken) {

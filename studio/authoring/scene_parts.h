@@ -32,6 +32,9 @@ double overlap(const FilledOrgan& organ, const FilledOrgan& other);
 /// A name that a file may have everywhere: letters, digits, - and _ of `name`, others as -.
 std::string file_name_of(const std::string& name);
 
+/// What the only organ of a scene is called: what its author says that it is, else as the scene.
+std::string name_alone(const std::string& tissue, const std::string& scene);
+
 /// `name`, with a number behind it if it is taken; never empty.
 std::string free_name(std::string name, const std::vector<std::string>& taken);
 

@@ -6,6 +6,7 @@
 #include "core/model/organ.h"
 #include "core/model/state.h"
 #include "studio/render/shading.h"
+#include "studio/render/shading_correction.h"
 
 namespace ctpm::render {
 
@@ -32,23 +33,12 @@ class OrganMesh {
   const std::vector<Vec3>& positions() const { return position_; }  ///< [m]
 
  private:
-  void find_corrections(const Surface& surface, const Shading& at_rest);
-  void correct();
-
   std::vector<Vec3> position_;
   Shading shading_;
   std::vector<Vec3> stained_;  ///< rest positions for which stain_ was computed [m]
   std::vector<float> per_neighbour_, stain_, lip_, rind_;
 
-  /// What is added so that the shading at rest is that of the organ's own surface, whose triangles are others: along
-  /// the way to a neighbour, and across it.
-  struct Correction {
-    std::size_t neighbour = 0;
-    double along = 0, across = 0;
-    float crevice = 0;
-    bool is_copy = false;  ///< the neighbour's normal is taken, since the vertex's own triangles are folded
-  };
-  std::vector<Correction> corrections_;  ///< of the first vertices; empty without a cut
+  ShadingCorrections corrections_;
   std::vector<float> data_;
 };
 

@@ -2,12 +2,31 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include "studio/render/noise.h"
+#include "studio/render/shading_correction.h"
 #include "studio/server/message_bytes.h"
 
 namespace ctpm::server {
 namespace {
+
+constexpr std::uint32_t kCopiesNormal = 1u << 31;
+
+/// What is added to the normals of an organ that is cut, in bytes.
+void add_corrections(MessageBytes& out, const render::CutSurface& cut) {
+  constexpr double kSteps = 63.5;  // of a correction of 1
+  const Surface& surface = cut.surface();
+  const render::ShadingCorrections corrections =
+      render::corrections_of(surface, render::count_neighbours(surface), cut.at_rest());
+  out.add(std::uint32_t(corrections.size()));
+  for (const render::ShadingCorrection& one : corrections)
+    out.add(std::uint32_t(one.neighbour) | (one.is_copy ? kCopiesNormal : 0u));
+  for (const bool is_along : {true, false})
+    for (const render::ShadingCorrection& one : corrections)
+      out.add(std::int8_t(std::clamp(std::round(kSteps * (is_along ? one.along : one.across)), -127.0, 127.0)));
+  out.pad();
+}
 
 /// The triangles message: corners, stain and lips of every organ's surface.
 std::string triangles_message(const std::vector<render::CutSurface>& surfaces, std::uint32_t stage,
@@ -26,6 +45,7 @@ std::string triangles_message(const std::vector<render::CutSurface>& surfaces, s
       out.add(std::uint8_t(v < cut.is_lip().size() && cut.is_lip()[v] ? 255 : 0));
     out.pad();
   }
+  for (const render::CutSurface& cut : surfaces) add_corrections(out, cut);
   return std::move(out.text);
 }
 
@@ -78,6 +98,7 @@ std::shared_ptr<const DrawnCut> DrawnCuts::of(const State& state) const {
 }
 
 std::shared_ptr<const DrawnCut> DrawnCuts::nearest(const State& state) const {
+  if (auto same = of(state)) return same;
   const std::lock_guard lock(mutex_);
   std::shared_ptr<const DrawnCut> best;
   for (const auto* kept : {&recent_, &for_good_})

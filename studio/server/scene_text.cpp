@@ -1,5 +1,8 @@
 #include "studio/server/scene_text.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "studio/loading/loaded_scene.h"
 #include "studio/server/text.h"
 #include "studio/views/look.h"
@@ -12,6 +15,18 @@ void write_colour(output::JsonWriter& json, const char* key, const render::Colou
   json.key(key).begin_list();
   for (const double part : colour) json.value(part);
   json.end_list();
+}
+
+/// The box around an organ's spheres at rest.
+void write_box(output::JsonWriter& json, const Model& model, const OrganRange& organ) {
+  Vec3 least{INFINITY, INFINITY, INFINITY}, most{-INFINITY, -INFINITY, -INFINITY};
+  for (std::int32_t i = organ.first; i < organ.first + organ.count; ++i) {
+    const Vec3 p = model.rest_position[std::size_t(i)];
+    least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
+    most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
+  }
+  json.key("least"), write_vector(json, least);
+  json.key("most"), write_vector(json, most);
 }
 
 /// Where a tool is taken up, if its author says that.
@@ -76,6 +91,7 @@ std::string view_json(const scenes::SceneSpec& scene, const Model& model) {
       json.end_list();
     }
     json.end_list();
+    write_box(json, model, organ);
     json.end_object();
   }
   json.end_list().key("tools").begin_list();

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kFar = 50;                  ///< ticks
 constexpr std::size_t kLittle = 200 * kEdgeNodes;  ///< points of a swept surface
-constexpr std::size_t kMostCursors = 3;            ///< before the first cut, after the last one, and one between
+constexpr std::size_t kMostCursors = 8;            ///< before the first cut, after those that stay, and one between
 
 }  // namespace
 
@@ -49,21 +49,32 @@ std::size_t Seeker::find_at_cut_of(const State& state) const {
   return best;
 }
 
-/// Puts a cursor at a kept State: one that is at the same cut, or a little before its end, else a new one or that of
-/// which the last use is longest ago.
+/// Takes a cursor in, in place of that of which the last use is longest ago.
+void Seeker::put(recordings::ReplayCursor cursor) {
+  if (cursors_.size() < kMostCursors) {
+    last_ = cursors_.size();
+    return cursors_.push_back({std::move(cursor)});
+  }
+  const auto oldest = std::min_element(cursors_.begin(), cursors_.end(),
+                                       [](const Cursor& a, const Cursor& b) { return a.used < b.used; });
+  last_ = std::size_t(oldest - cursors_.begin());
+  oldest->replay = std::move(cursor);
+}
+
+/// Puts a cursor at a kept State: one that is at the same cut, or a little before its end, else one that was made ready
+/// there, else a new one.
 Result<Done> Seeker::begin_at(const Moments::Place& place) {
   const Result<Moment> start = moments_.read(place, reader_);
   if (!start) return start.errors();
   last_ = find_at_cut_of(start->state);
-  const bool is_none = last_ == cursors_.size();
-  if (is_none && cursors_.size() < kMostCursors) {
-    Result<recordings::ReplayCursor> made = recordings::ReplayCursor::create(reader_);
-    if (!made) return made.errors();
-    cursors_.push_back({std::move(*made)});
-  } else if (is_none) {
-    const auto oldest = std::min_element(cursors_.begin(), cursors_.end(),
-                                         [](const Cursor& a, const Cursor& b) { return a.used < b.used; });
-    last_ = std::size_t(oldest - cursors_.begin());
+  if (last_ == cursors_.size()) {
+    if (std::optional<recordings::ReplayCursor> spare = spares_.take(start->state)) {
+      put(std::move(*spare));
+    } else {
+      Result<recordings::ReplayCursor> made = recordings::ReplayCursor::create(reader_);
+      if (!made) return made.errors();
+      put(std::move(*made));
+    }
   }
   cursors_[last_].replay.resume(start->tick, start->state);
   cursors_[last_].was_same = start->is_same;

@@ -7,6 +7,7 @@
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
 #include "studio/server/moments.h"
+#include "studio/server/spare_cursors.h"
 
 namespace ctpm::server {
 
@@ -14,8 +15,9 @@ namespace ctpm::server {
 /// what a cut opens takes longer to build than many ticks.
 class Seeker {
  public:
-  /// `reader` and `moments`, of the same session, must outlive this.
-  Seeker(recordings::SessionReader& reader, Moments& moments) : reader_(reader), moments_(moments) {}
+  /// `reader`, `moments` and `spares`, of the same session, must outlive this.
+  Seeker(recordings::SessionReader& reader, Moments& moments, SpareCursors& spares)
+      : reader_(reader), moments_(moments), spares_(spares) {}
 
   /// Whether the way to `tick` is long: many ticks, or a cut at which no cursor is.
   bool is_far(std::int64_t tick) const;
@@ -37,10 +39,12 @@ class Seeker {
   bool is_there(std::int64_t tick) const { return has_report_ && cursors_[last_].replay.tick() == tick; }
   bool goes_on(std::int64_t tick);
   std::size_t find_at_cut_of(const State& state) const;
+  void put(recordings::ReplayCursor cursor);
   Result<Done> begin_at(const Moments::Place& place);
 
   recordings::SessionReader& reader_;
   Moments& moments_;
+  SpareCursors& spares_;
   std::vector<Cursor> cursors_;
   std::size_t last_ = 0;
   bool has_report_ = false;  ///< the last go_to() came to its end

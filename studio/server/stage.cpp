@@ -28,7 +28,8 @@ Stage::Stage(recordings::SessionReader reader, std::unique_ptr<Moments> moments,
       number_(number),
       outbox_(std::move(outbox)),
       cuts_(std::make_shared<DrawnCuts>(reader_.start().model, number)),
-      ahead_(reader_.path(), reader_.start().model, number, cuts_) {
+      ahead_(reader_.path(), reader_.start().model, number, cuts_),
+      spares_(reader_) {
   replay_thread_ = std::thread([this] { replay(); });
   glimpse_thread_ = std::thread([this] { glance(); });
 }
@@ -153,7 +154,7 @@ void Stage::wait_for_glimpse(const Wish& wish) {
 
 void Stage::replay() {
   become(Urgency::picture);
-  Seeker seeker(reader_, *moments_);
+  Seeker seeker(reader_, *moments_, spares_);
   PictureMaker maker(reader_.start().model, number_, cuts_);
   Drawing drawing(reader_);
   while (const std::optional<Wish> wish = next(is_wanted_)) {

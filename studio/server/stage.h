@@ -18,6 +18,7 @@
 #include "studio/server/moments.h"
 #include "studio/server/outbox.h"
 #include "studio/server/picture.h"
+#include "studio/server/spare_cursors.h"
 
 namespace ctpm::server {
 
@@ -68,6 +69,7 @@ class Stage {
   std::shared_ptr<Outbox> outbox_;
   std::shared_ptr<DrawnCuts> cuts_;
   CutsAhead ahead_;
+  SpareCursors spares_;
   std::mutex mutex_;
   std::condition_variable news_;
   Wish newest_;

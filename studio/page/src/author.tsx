@@ -144,7 +144,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
         <ul class="scenes">
           {listing.scenes.map((entry) => (
             <li key={entry.path}>
-              <button type="button" aria-current={path === entry.path} onClick={() => open(entry.path)}><span>{entry.path.replace(/\.json$/, "")}</span></button>
+              <button type="button" aria-current={path === entry.path} title={entry.path} onClick={() => open(entry.path)}><span>{entry.path.replace(/\.json$/, "")}</span></button>
             </li>
           ))}
         </ul>

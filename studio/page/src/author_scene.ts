@@ -7,7 +7,7 @@ import type { Json } from "./json_edit";
 import { CallFailed, type Problem, type SceneView, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
 import type { Schema } from "./scene_schema";
 import { StageScene, type Shown } from "./stage_scene";
-import type { Viewer } from "./viewer";
+import { firstCamera, type Viewer } from "./viewer";
 
 export const kAuthorStage = 3;
 const kCheckAfter = 250, kShowAfter = 300; // without a change [ms]
@@ -215,7 +215,7 @@ export class AuthorScene {
       return middleOf(organ.centre).sub(place).applyQuaternion(turn.clone().invert()).divideScalar(scale);
     });
     // A scene is seen by its first camera; when an organ came, by the one that sees everything.
-    const camera = isFirst ? shown.view.cameras[0] : shown.view.organs.length > had ? shown.view.cameras.at(-1) : undefined;
+    const camera = isFirst ? firstCamera(shown.view) : shown.view.organs.length > had ? shown.view.cameras.at(-1) : undefined;
     if (camera) this.viewer.look(camera);
     void this.measure();
   }

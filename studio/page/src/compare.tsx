@@ -1,18 +1,19 @@
 import { useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
-import { Problems, Section, ShownCommand, Working } from "./parts";
+import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { firstOf, type Player } from "./player";
 import type { ComparisonResult, Listing, MeasureRow } from "./protocol";
 import { command, seconds, short } from "./text";
 
 /** The session beside: which one, how the two are aligned, and how they differ. */
-export function Compare({ connection, player, listing, comparison, onComparison, onBeside }: {
+export function Compare({ connection, player, listing, comparison, onComparison, onBeside, onSwap }: {
   connection: Connection;
   player: Player;
   listing: Listing;
   comparison: ComparisonResult | null;
   onComparison: (result: ComparisonResult | null) => void;
   onBeside: (path: string | undefined) => Promise<void>;
+  onSwap: () => void; // the expert's session becomes the trainee's
 }) {
   const [error, setError] = useState<Error | null>(null);
   const [progress, setProgress] = useState<[number, number] | null>(null);
@@ -54,23 +55,25 @@ export function Compare({ connection, player, listing, comparison, onComparison,
   return (
     <>
       <Section title="Two sessions">
+        <Readings rows={[["expert", <b class="first">{first.path}</b>]]} />
         <label class="field">
-          <span>beside <b class="first">{first.path}</b></span>
+          <span>trainee, to compare with</span>
           <select value={second?.path ?? ""} onChange={(e) => void choose(e.currentTarget.value)}>
-            <option value="">nothing</option>
+            <option value="">nobody</option>
             {listing.sessions.filter((s) => s.path !== first.path).map((s) => <option key={s.path} value={s.path}>{s.path}</option>)}
           </select>
         </label>
-        {!second && <p class="hint">Review the expert's session and choose a trainee's here. They run side by side, and differences are drawn below.</p>}
+        {!second && <p class="hint">The session that is open counts as the expert's. Choose a trainee's here: they run side by side, and differences are drawn below.</p>}
         {second && (
           <>
+            <button type="button" onClick={onSwap}>Swap expert and trainee</button>
             <div class="buttons" role="group" aria-label="Align at">
               <button type="button" aria-pressed={player.aligned === "contact begins"} disabled={!can("contact begins")} onClick={() => align("contact begins")}>first contact</button>
               <button type="button" aria-pressed={player.aligned === "cut"} disabled={!can("cut")} onClick={() => align("cut")}>first cut</button>
               <button type="button" aria-pressed={player.aligned === "path"} disabled={progress !== null} onClick={() => void alignAlong()}>path</button>
             </div>
             <label class="field">
-              <span>by hand: the one beside is ahead by [s]</span>
+              <span>by hand: the trainee is ahead by [s]</span>
               <input type="number" step="0.01" value={player.path ? "" : Number(player.offset.toFixed(3))}
                 onChange={(e) => player.setOffset(Number(e.currentTarget.value) || 0)} />
             </label>

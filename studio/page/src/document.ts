@@ -134,9 +134,10 @@ export class SceneDocument {
   reveal(path: JSONPath): void {
     const root = parseTree(this.text), node = root && findNodeAtLocation(root, path);
     if (!node) return;
-    this.view.dispatch({
-      selection: { anchor: node.offset, head: node.offset + node.length }, effects: EditorView.scrollIntoView(node.offset, { y: "center" }),
-    });
+    this.view.dispatch({ selection: { anchor: node.offset, head: node.offset + node.length } });
+    // The text scrolls, and not the page with it: in a narrow window it is below the picture.
+    const { scrollDOM } = this.view;
+    scrollDOM.scrollTop = this.view.lineBlockAt(node.offset).top - scrollDOM.clientHeight / 2;
   }
 
   /** Changes the text where it differs: as a step of its own, or as a part of a gesture. */

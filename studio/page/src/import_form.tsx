@@ -1,3 +1,4 @@
+import type { JSONPath } from "jsonc-parser";
 import { useEffect, useRef, useState } from "preact/hooks";
 import * as three from "three";
 import type { AuthorScene, Finding } from "./author_scene";
@@ -5,8 +6,9 @@ import type { Connection } from "./connection";
 import { freeName, listOf, mmVector } from "./items";
 import { findJson, type Json, parseJson } from "./json_edit";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
-import type { Vector } from "./protocol";
+import { CallFailed, type CameraView, type Vector } from "./protocol";
 import { command } from "./text";
+import { seesBox } from "./viewer";
 
 interface Preset {
   name: string;
@@ -29,6 +31,8 @@ export interface Imported {
 
 const kUnits: Record<string, string> = { "0.001": "mm", "0.01": "cm", "0.1": "dm", "1": "m", "0.0254": "in" };
 const kGap = 0.01; // between an organ that is added and the others [m]
+const kImportsCamera = "front"; // as an import names the camera that it places
+const kGeneric = "soft-tissue"; // what an organ of no name is taken as
 
 /** What was found in a mesh, what was done about it, and what remains. */
 export function Findings({ findings }: { findings: Finding[] }) {
@@ -57,7 +61,24 @@ export function ImportResult({ imported }: { imported: Imported }) {
   );
 }
 
-/** Adds the organ of a scene that was imported to the one that is open, beside its organs: one step of its history. */
+/** The smallest limit with which holes that were refused are closed [mm]; null: something else was wrong. */
+function holesOf(error: Error | null): number | null {
+  const found = error instanceof CallFailed ? error.problems.map(({ hint }) => Number(/largest_hole_mm (\d+)/.exec(hint)?.[1] ?? 0)) : [];
+  return Math.max(0, ...found) || null;
+}
+
+/** The first camera of a scene, moved away until it sees a larger box as it saw the one before; null: it sees it already. */
+function movedCamera(camera: CameraView | undefined, before: [Vector, Vector], now: [Vector, Vector]): CameraView | null {
+  if (!camera || seesBox(camera, ...now)) return null;
+  const boxes = [before, now].map(([least, most]) => new three.Box3(new three.Vector3(...least), new three.Vector3(...most)));
+  const [middle, newMiddle] = boxes.map((box) => box.getCenter(new three.Vector3()));
+  const [size, newSize] = boxes.map((box) => box.getSize(new three.Vector3()).length());
+  const moved = (place: Vector) => new three.Vector3(...place).sub(middle).multiplyScalar(newSize / size).add(newMiddle).toArray() as Vector;
+  return { ...camera, eye: moved(camera.eye), target: moved(camera.target) };
+}
+
+/** Adds the organ of a scene that was imported to the one that is open, beside its organs, and moves the camera that an
+    import left there until it sees all of them: one step of its history. */
 async function addOrgan(connection: Connection, open: AuthorScene, imported: Imported): Promise<void> {
   const { text } = await connection.call<{ text: string }>("scene.read", { path: imported.scene });
   const organ = findJson(parseJson(text), ["organs", 0]) as { [key: string]: Json };
@@ -65,7 +86,16 @@ async function addOrgan(connection: Connection, open: AuthorScene, imported: Imp
   const at = view ? new three.Vector3(view.most[0] + kGap - imported.least[0], (view.least[1] + view.most[1] - imported.least[1] - imported.most[1]) / 2, view.least[2] - imported.least[2])
     : new three.Vector3();
   const { name, mesh, at_mm: _, ...rest } = organ;
-  doc.set([[["organs", organs.length], { name: freeName(organs, String(name)), mesh, at_mm: mmVector(at), ...rest }]]);
+  const values: [JSONPath, Json][] = [[["organs", organs.length], { name: freeName(organs, String(name)), mesh, at_mm: mmVector(at), ...rest }]];
+  const cameras = listOf(doc.value, "cameras");
+  if (view && cameras[0]?.name === kImportsCamera) {
+    const box = new three.Box3(new three.Vector3(...imported.least), new three.Vector3(...imported.most)).translate(at);
+    const all = box.clone().expandByPoint(new three.Vector3(...view.least)).expandByPoint(new three.Vector3(...view.most));
+    const camera = movedCamera(view.cameras[0], [view.least, view.most], [all.min.toArray() as Vector, all.max.toArray() as Vector]);
+    for (const [key, place] of camera ? [["eye_mm", camera.eye], ["target_mm", camera.target]] as const : [])
+      values.push([["cameras", 0, key], mmVector(new three.Vector3(...place))]);
+  }
+  doc.set(values);
 }
 
 /** What is needed to make a scene of a mesh, and how far it is. */
@@ -83,7 +113,7 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
   const [unit, setUnit] = useState("");
   const [radius, setRadius] = useState("");
   const [hole, setHole] = useState("");
-  const [scene, setScene] = useState(`${stem}-scene.json`);
+  const [scene, setScene] = useState(/\.obj$/i.test(file.name) ? `${stem}-scene.json` : `${stem}.json`);
   const [isAdded, setAdded] = useState(false);
   const [progress, setProgress] = useState<[string, number] | null>(null);
   const [error, setError] = useState<Error | null>(null);
@@ -92,14 +122,14 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
   useEffect(() => {
     connection.call<Preset[]>("scene.presets").then((known) => {
       setPresets(known);
-      setOrgan(known.find((preset) => file.name.toLowerCase().includes(preset.organ))?.name ?? known[0]?.name ?? "");
+      setOrgan(known.find((preset) => file.name.toLowerCase().includes(preset.organ))?.name ?? kGeneric);
     }, setError);
     return () => stop.current.abort();
   }, [connection, file]);
 
-  const target = isAdded ? folder + scene : scene;
-  const start = async () => {
-    setError(null);
+  const target = isAdded ? folder + scene : scene, refused = holesOf(error);
+  const start = async (closed = hole) => {
+    setError(null), setHole(closed);
     const { signal } = (stop.current = new AbortController());
     try {
       if (!uploaded.current) {
@@ -110,7 +140,7 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
       setProgress(["importing", 0]);
       const params = {
         mesh: uploaded.current, scene: target, organ, unit_m: unit ? Number(unit) : undefined, radius_m: radius ? Number(radius) / 1e3 : undefined,
-        largest_hole_m: hole ? Number(hole) / 1e3 : undefined,
+        largest_hole_m: closed ? Number(closed) / 1e3 : undefined,
       };
       const imported = await connection.call<Imported>("scene.import", params,
         { progress: (done, total) => setProgress([done < total ? "importing" : "fitting the stiffness", done / total]), signal });
@@ -158,6 +188,9 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
           </div>
         )}
       <Problems error={error} />
+      {refused !== null && !progress && (
+        <button type="button" class="main" onClick={() => void start(String(refused))}>Close holes up to {refused} mm and import</button>
+      )}
       <ShownCommand text={command("import", file.name, "--organ", organ, ...(unit ? ["--unit", kUnits[unit]] : []),
         ...(radius ? ["--radius-mm", radius] : []), ...(hole ? ["--largest-hole-mm", hole] : []), "-o", target)} />
     </Section>

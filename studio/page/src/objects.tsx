@@ -78,7 +78,7 @@ export function Objects({ scene, viewer, items, selected, onSelect, brushRadius,
           <ul>
             {items.filter((item) => item.kind === kind).map((item) => (
               <li key={item.key}>
-                <button type="button" aria-current={item.key === selected} onClick={() => onSelect(item.key)}><i class={`dot ${kind}`} /><span>{item.name}</span></button>
+                <button type="button" aria-current={item.key === selected} title={item.name} onClick={() => onSelect(item.key)}><i class={`dot ${kind}`} /><span>{item.name}</span></button>
               </li>
             ))}
           </ul>

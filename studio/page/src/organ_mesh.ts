@@ -1,5 +1,5 @@
 import * as three from "three";
-import type { OrganTriangles, OrganView } from "./protocol";
+import { kCopiesNormal, kCorrectionSteps, type OrganTriangles, type OrganView } from "./protocol";
 
 /** sRGB as linear light. */
 function linear(c: number): number {
@@ -12,17 +12,19 @@ export class OrganMesh {
   private readonly materials: three.MeshPhongMaterial[]; // of the outside, and of the walls of cuts
   private readonly position: Float32Array;
   private readonly normal: Float32Array;
-  private readonly index: Uint32Array;
+  private readonly index: Uint32Array; // all triangles
+  private readonly whole: three.Mesh; // of all of them, to be met by rays
+  private readonly facing: Uint32Array; // those that are drawn: the outer ones that face the viewer, and the walls of cuts
+  private readonly faced = new three.Vector3(NaN, NaN, NaN); // the viewer's place when they were found
+  private drawsAll = true;
   private isColoured = false;
 
   constructor(private readonly triangles: OrganTriangles, private readonly look: OrganView) {
     this.index = triangles.index;
     this.position = new Float32Array(3 * triangles.vertexCount);
     this.normal = new Float32Array(3 * triangles.vertexCount);
-    const geometry = new three.BufferGeometry();
-    geometry.setIndex(new three.BufferAttribute(this.index, 1));
-    geometry.setAttribute("position", new three.BufferAttribute(this.position, 3));
-    geometry.setAttribute("normal", new three.BufferAttribute(this.normal, 3));
+    this.facing = this.index.slice();
+    const geometry = this.geometryOf(this.facing, three.DynamicDrawUsage);
     geometry.setAttribute("color", new three.BufferAttribute(new Float32Array(3 * triangles.vertexCount), 3));
     const shine = 0.04 + 0.09 * look.wetness;
     const material = (side: three.Side) =>
@@ -34,6 +36,15 @@ export class OrganMesh {
     this.materials = [material(three.FrontSide), material(three.DoubleSide)];
     this.mesh = new three.Mesh(geometry, this.materials);
     this.mesh.frustumCulled = false;
+    this.whole = new three.Mesh(this.geometryOf(this.index), new three.MeshBasicMaterial({ side: three.DoubleSide }));
+  }
+
+  private geometryOf(index: Uint32Array, usage: three.Usage = three.StaticDrawUsage): three.BufferGeometry {
+    const geometry = new three.BufferGeometry();
+    geometry.setIndex(new three.BufferAttribute(index, 1).setUsage(usage));
+    geometry.setAttribute("position", new three.BufferAttribute(this.position, 3));
+    geometry.setAttribute("normal", new three.BufferAttribute(this.normal, 3));
+    return geometry;
   }
 
   /** Whether positions are of its vertices. */
@@ -48,7 +59,8 @@ export class OrganMesh {
     const { geometry } = this.mesh;
     geometry.attributes.position.needsUpdate = true;
     geometry.attributes.normal.needsUpdate = true;
-    geometry.boundingSphere = null; // of positions before
+    this.whole.geometry.boundingSphere = geometry.boundingSphere = null; // of positions before
+    this.faced.setScalar(NaN);
     this.mesh.position.set(0, 0, 0), this.mesh.quaternion.identity(), this.mesh.scale.setScalar(1);
   }
 
@@ -64,18 +76,56 @@ export class OrganMesh {
     this.materials[0].side = opacity < 1 ? three.DoubleSide : three.FrontSide;
   }
 
+  /** Draws of the outside what faces a viewer alone, which is half of it: where the processor draws, a triangle that
+      is left out only in the end costs as much as one that is seen. */
+  drawFacing(viewer: three.Vector3): void {
+    if (this.materials[0].side !== three.FrontSide) return this.drawAll();
+    const eye = this.mesh.worldToLocal(viewer.clone());
+    if (eye.equals(this.faced)) return;
+    this.faced.copy(eye);
+    this.drawsAll = false;
+    const { position: p, index, facing } = this, outer = 3 * this.triangles.outerTriangleCount;
+    let count = 0;
+    for (let t = 0; t < outer; t += 3) {
+      const a = 3 * index[t], b = 3 * index[t + 1], c = 3 * index[t + 2];
+      const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+      const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+      const away = (uy * vz - uz * vy) * (eye.x - p[a]) + (uz * vx - ux * vz) * (eye.y - p[a + 1]) + (ux * vy - uy * vx) * (eye.z - p[a + 2]);
+      if (away > 0) facing[count] = index[t], facing[count + 1] = index[t + 1], facing[count + 2] = index[t + 2], count += 3;
+    }
+    facing.set(index.subarray(outer), count);
+    this.draws(count);
+  }
+
+  private drawAll(): void {
+    if (this.drawsAll) return;
+    this.drawsAll = true;
+    this.faced.setScalar(NaN);
+    this.facing.set(this.index);
+    this.draws(3 * this.triangles.outerTriangleCount);
+  }
+
+  /** The first `outer` indices are of the outside, and those of walls follow. */
+  private draws(outer: number): void {
+    const { geometry } = this.mesh, walls = this.index.length - 3 * this.triangles.outerTriangleCount;
+    geometry.clearGroups();
+    geometry.addGroup(0, outer, 0);
+    if (walls > 0) geometry.addGroup(outer, walls, 1);
+    geometry.index!.clearUpdateRanges();
+    geometry.index!.addUpdateRange(0, outer + walls);
+    geometry.index!.needsUpdate = true;
+  }
+
   /** Where a ray meets the surface first, seen or not. */
   meet(ray: three.Raycaster): three.Intersection | null {
-    const wasVisible = this.mesh.visible;
-    this.mesh.visible = true;
-    this.mesh.updateMatrixWorld();
-    const hit = ray.intersectObject(this.mesh, false)[0] ?? null;
-    this.mesh.visible = wasVisible;
-    return hit;
+    const { mesh, whole } = this;
+    whole.position.copy(mesh.position), whole.quaternion.copy(mesh.quaternion), whole.scale.copy(mesh.scale);
+    whole.updateMatrixWorld();
+    return ray.intersectObject(whole, false)[0] ?? null;
   }
 
   dispose(): void {
-    this.mesh.geometry.dispose();
+    this.mesh.geometry.dispose(), this.whole.geometry.dispose();
     for (const material of this.materials) material.dispose();
   }
 
@@ -92,10 +142,31 @@ export class OrganMesh {
       n[b] += x, n[b + 1] += y, n[b + 2] += z;
       n[c] += x, n[c + 1] += y, n[c + 2] += z;
     }
-    for (let v = 0; v < n.length; v += 3) {
-      const length = Math.hypot(n[v], n[v + 1], n[v + 2]) || 1;
-      n[v] /= length, n[v + 1] /= length, n[v + 2] /= length;
+    for (let v = 0; v < n.length; v += 3) this.setNormal(v, n[v], n[v + 1], n[v + 2]);
+    this.correctNormals();
+  }
+
+  /** The normals of a cut organ as those of the whole one are, whose triangles are others; as in videos. */
+  private correctNormals(): void {
+    const { position: p, normal: n } = this, { neighbour, along, across } = this.triangles.corrections;
+    for (let v = 0; v < neighbour.length; ++v) {
+      if (neighbour[v] >= kCopiesNormal || (along[v] === 0 && across[v] === 0)) continue;
+      const a = 3 * v, b = 3 * neighbour[v], nx = n[a], ny = n[a + 1], nz = n[a + 2];
+      let x = p[b] - p[a], y = p[b + 1] - p[a + 1], z = p[b + 2] - p[a + 2];
+      const out = x * nx + y * ny + z * nz;
+      x -= out * nx, y -= out * ny, z -= out * nz;
+      const length = Math.sqrt(x * x + y * y + z * z) * kCorrectionSteps;
+      if (length === 0) continue;
+      const f = along[v] / length, g = across[v] / length;
+      this.setNormal(a, nx + f * x + g * (ny * z - nz * y), ny + f * y + g * (nz * x - nx * z), nz + f * z + g * (nx * y - ny * x));
     }
+    for (let v = 0; v < neighbour.length; ++v)
+      if (neighbour[v] >= kCopiesNormal) n.copyWithin(3 * v, 3 * (neighbour[v] - kCopiesNormal), 3 * (neighbour[v] - kCopiesNormal) + 3);
+  }
+
+  private setNormal(at: number, x: number, y: number, z: number): void {
+    const { normal: n } = this, length = Math.sqrt(x * x + y * y + z * z) || 1; // hypot is many times slower
+    n[at] = x / length, n[at + 1] = y / length, n[at + 2] = z / length;
   }
 
   /** Colours by vertex: stained tissue outside, darker in hollows; the inside's colour on the walls of cuts. */

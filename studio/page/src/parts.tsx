@@ -3,7 +3,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { CallFailed, problemText } from "./protocol";
 
 /** Numbers in a column, each with its unit. */
-export function Readings({ rows }: { rows: [string, string][] }) {
+export function Readings({ rows }: { rows: [string, ComponentChildren][] }) {
   return (
     <dl class="readings">
       {rows.map(([name, value]) => (
@@ -46,6 +46,22 @@ export function ShownCommand({ text }: { text: string }) {
         {copied ? "copied" : "copy"}
       </button>
     </div>
+  );
+}
+
+const kRepeat = 60; // of what a held button does [ms]
+
+/** A button that does something as long as it is held, for hands without keys. */
+export function HeldButton({ text, onHeld }: { text: string; onHeld: () => void }) {
+  const timer = useRef<ReturnType<typeof setInterval>>();
+  const stop = () => clearInterval(timer.current);
+  useEffect(() => stop, []);
+  return (
+    <button type="button" onPointerDown={(e) => {
+      e.currentTarget.setPointerCapture(e.pointerId);
+      stop(), onHeld();
+      timer.current = setInterval(onHeld, kRepeat);
+    }} onPointerUp={stop} onPointerCancel={stop} onContextMenu={(e) => e.preventDefault()} onClick={(e) => e.detail === 0 && onHeld()}>{text}</button>
   );
 }
 

@@ -16,17 +16,18 @@ function drawsWithProcessor(): boolean {
   return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
 }
 
-let isByProcessor: boolean | undefined; // the same for all pictures of the page
+let known: boolean | undefined; // the same for all pictures of the page
 
 /** Follows how long pictures take. */
 export class PictureQuality {
+  readonly isByProcessor: boolean; // the browser draws with it
   readonly smoothsEdges: boolean; // while something moves
   private step = 0;
   private times: number[] = []; // of the last pictures [ms]
 
   constructor() {
-    isByProcessor ??= drawsWithProcessor();
-    this.smoothsEdges = !isByProcessor;
+    this.isByProcessor = known ??= drawsWithProcessor();
+    this.smoothsEdges = !this.isByProcessor;
   }
 
   /** Pixels to draw for one of the page, along each side. */

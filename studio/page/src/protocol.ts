@@ -67,6 +67,8 @@ export interface OrganView {
   inner: Vector;
   wetness: number;
   layer_colours: Vector[]; // sRGB, outermost first
+  least: Vector; // the box around its spheres at rest
+  most: Vector;
 }
 
 export interface ToolView {
@@ -191,7 +193,16 @@ export interface OrganTriangles {
   index: Uint32Array;
   stain: Uint8Array;
   lip: Uint8Array;
+  corrections: NormalCorrections;
 }
+
+/** What is added to the normals of the first vertices of an organ that is cut. */
+export interface NormalCorrections {
+  neighbour: Uint32Array; // and kCopiesNormal
+  along: Int8Array; // the way to it, and across that, in steps of 1 / kCorrectionSteps of the normal
+  across: Int8Array;
+}
+export const kCopiesNormal = 2 ** 31, kCorrectionSteps = 63.5;
 
 export interface Triangles {
   kind: "triangles";
@@ -303,6 +314,15 @@ function indices(r: Reader, count: number, vertexCount: number): Uint32Array {
   return index;
 }
 
+function readCorrections(r: Reader, vertexCount: number): NormalCorrections {
+  const count = r.u32();
+  if (count > vertexCount) throw new RangeError("more vertices are corrected than there are");
+  const neighbour = r.array(Uint32Array, 4, count), along = r.array(Int8Array, 1, count), across = r.array(Int8Array, 1, count);
+  r.pad();
+  for (const v of neighbour) if (v % kCopiesNormal >= vertexCount) throw new RangeError("a correction names a vertex that is not there");
+  return { neighbour, along, across };
+}
+
 function readTriangles(r: Reader): Triangles {
   const stage = r.u32(), topology = r.u32(), count = r.u32();
   const organs: OrganTriangles[] = [];
@@ -312,8 +332,9 @@ function readTriangles(r: Reader): Triangles {
     const index = indices(r, 3 * triangleCount, vertexCount);
     const stain = r.array(Uint8Array, 1, vertexCount), lip = r.array(Uint8Array, 1, vertexCount);
     r.pad();
-    organs.push({ vertexCount, outerVertexCount, outerTriangleCount, index, stain, lip });
+    organs.push({ vertexCount, outerVertexCount, outerTriangleCount, index, stain, lip, corrections: { neighbour: new Uint32Array(), along: new Int8Array(), across: new Int8Array() } });
   }
+  for (const organ of organs) organ.corrections = readCorrections(r, organ.vertexCount);
   return { kind: "triangles", stage, topology, organs };
 }
 

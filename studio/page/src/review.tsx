@@ -87,6 +87,18 @@ export function Review({ connection, listing, place, onPlace }: {
     }
   }, [player]);
 
+  /** The trainee's session becomes the expert's, at the same moment of both. */
+  const swap = async () => {
+    if (!player || !first || !second) return;
+    const [expert, trainee] = [first, second].map(({ session }) => session.path), { aligned } = player;
+    const beside = player.timeOf(1), ahead = beside - player.time;
+    await open(0, trainee);
+    await open(1, expert);
+    player.setOffset(-ahead);
+    player.aligned = aligned === "path" ? "" : aligned; // a path is of the comparison before
+    player.move(beside);
+  };
+
   // The address names a session and a moment: a link leads there.
   useEffect(() => {
     if (!player || !place.session || player.tracks.get(0)?.session.path === place.session) return;
@@ -171,7 +183,7 @@ export function Review({ connection, listing, place, onPlace }: {
         <ul>
           {listing.sessions.map((entry) => (
             <li key={entry.path}>
-              <button type="button" aria-current={first?.session.path === entry.path} onClick={() => void open(0, entry.path)}>
+              <button type="button" aria-current={first?.session.path === entry.path} title={entry.path} onClick={() => void open(0, entry.path)}>
                 <span>{entry.path.replace(/\.ctpm$/, "")}</span>
                 <small>{bytes(entry.bytes)}</small>
               </button>
@@ -192,8 +204,8 @@ export function Review({ connection, listing, place, onPlace }: {
         )}
         {first && (
           <div class="captions">
-            <span class="first"><b>{first.session.path}{second && ` ${seconds(player!.timeOf(0))}`}</b></span>
-            {second && <span class="second"><b>{second.session.path} {seconds(player!.timeOf(1))}</b></span>}
+            <span class="first"><b>{second && "expert: "}{first.session.path}{second && ` ${seconds(player!.timeOf(0))}`}</b></span>
+            {second && <span class="second"><b>trainee: {second.session.path} {seconds(player!.timeOf(1))}</b></span>}
           </div>
         )}
         {legend && <LegendBar legend={legend} />}
@@ -242,7 +254,7 @@ export function Review({ connection, listing, place, onPlace }: {
               {panel === "moment" && <Moment connection={connection} player={player} frame={frame} other={other} />}
               {panel === "compare" && (
                 <Compare connection={connection} player={player} listing={listing} comparison={comparison} onComparison={setComparison}
-                  onBeside={(path) => open(1, path)} />
+                  onBeside={(path) => open(1, path)} onSwap={() => void swap()} />
               )}
               {panel === "notes" && <NotesPanel connection={connection} player={player} onNotes={(list, stage) => setNotes({ list, stage })} />}
               {panel === "export" && <ExportForm key={first.session.path} connection={connection} player={player} look={look} />}
@@ -287,12 +299,12 @@ function Moment({ connection, player, frame, other }: { connection: Connection; 
   ] : [];
   return (
     <>
-      <Section title="This moment">
+      <Section title={other ? "This moment, expert" : "This moment"}>
         <Readings rows={[["tick", String(frame?.tick ?? 0)], ...rows(frame),
           ["picture after", player.pictureAfter === null ? "…" : `${player.pictureAfter.toFixed(0)} ms`],
           ["replayed after", player.replayedAfter === null ? "…" : `${player.replayedAfter.toFixed(0)} ms`]]} />
       </Section>
-      {other && <Section title="Beside"><Readings rows={rows(other)} /></Section>}
+      {other && <Section title="Trainee"><Readings rows={rows(other)} /></Section>}
       <Section title="Events">
         <ul class="jumps">
           {shownEvents(info.events).map((event, i) => (

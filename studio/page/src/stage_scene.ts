@@ -132,6 +132,11 @@ export class StageScene {
     return true;
   }
 
+  /** Of the organs, only what faces a viewer is drawn. */
+  drawFacing(viewer: three.Vector3): void {
+    for (const organ of this.organs) organ.drawFacing(viewer);
+  }
+
   /** A pale copy of a tool at a pose (tool, position, orientation w x y z); null: none. */
   setGhost(pose: number[] | null): void {
     const [tool, px, py, pz, w, x, y, z] = pose ?? [-1];

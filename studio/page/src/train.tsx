@@ -3,13 +3,25 @@ import { Result } from "./compare";
 import type { Connection } from "./connection";
 import { DeviceForm } from "./device";
 import { deviceParameters, deviceWords, storedDevice, storeDevice } from "./device_choice";
-import { Empty, Problems, Readings, Section, ShownCommand, Working } from "./parts";
+import { Empty, HeldButton, Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { type ComparisonResult, type EndedTraining, type Listing, type Motion, problemText } from "./protocol";
 import { behind, command, millimetres, newtons, seconds } from "./text";
 import type { Place } from "./place";
 import { ForceSound } from "./sound";
 import { kGhostAhead, Trainer } from "./trainer";
 import { Viewer } from "./viewer";
+
+/** What keys do, for hands that have none. */
+const kHeld: [string, string][] = [["farther", "PageUp"], ["closer", "PageDown"], ["turn left", "q"], ["turn right", "e"], ["tip up", "w"], ["tip down", "s"]];
+
+const kNumbers = 50, kNumbersBeside = 200; // from one reading to the next; where the processor draws pictures beside them [ms]
+const kForceLimit = 10; // of a scene that has none [N]
+
+/** Moves the bar of the force with each picture: it is scaled, so that nothing is laid out anew. */
+function showForce(bar: HTMLElement | null, trainer: Trainer): void {
+  const force = Math.hypot(...(trainer.ownFrame?.force ?? [0]));
+  bar?.style.setProperty("transform", `scaleY(${Math.min(1, force / (trainer.scene?.view.damage_force_n || kForceLimit))})`);
+}
 
 type Phase = "choose" | "loading" | "running" | "ended";
 
@@ -38,6 +50,8 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
   const [error, setError] = useState<Error | null>(null);
   const [, setTick] = useState(0);
   const last = useRef<{ x: number; y: number } | null>(null);
+  const [isTouch, setTouch] = useState(() => matchMedia("(pointer: coarse)").matches);
+  const fingers = useRef(new Set<number>()), bar = useRef<HTMLDivElement>(null);
   const loading = useRef<AbortController | null>(null);
   const sound = useRef(new ForceSound());
 
@@ -49,8 +63,10 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
     viewer.controls.mouseButtons = { LEFT: null, MIDDLE: null, RIGHT: 0 };
     const made = new Trainer(connection, viewer);
     let last = 0;
+    const interval = viewer.isByProcessor ? kNumbersBeside : kNumbers;
     made.onFrame = () => {
-      if (performance.now() - last < 50) return;
+      showForce(bar.current, made);
+      if (performance.now() - last < interval) return;
       last = performance.now();
       setTick((t) => t + 1);
     };
@@ -122,9 +138,22 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
     return () => target.removeEventListener("wheel", wheel);
   }, [trainer, phase]);
 
+  // One finger moves the tool; two look around, and are not followed.
+  useEffect(() => {
+    const count = (event: PointerEvent) => {
+      if (event.pointerType !== "touch") return;
+      if (event.type === "pointerdown") fingers.current.add(event.pointerId), setTouch(true);
+      else fingers.current.delete(event.pointerId);
+      last.current = null;
+    };
+    const kinds = ["pointerdown", "pointerup", "pointercancel"] as const;
+    for (const kind of kinds) addEventListener(kind, count);
+    return () => kinds.forEach((kind) => removeEventListener(kind, count));
+  }, []);
+
   const move = (event: PointerEvent) => {
     if (phase !== "running" || trainer?.awaited || (event.buttons & 2) !== 0) return;
-    if (event.pointerType === "touch" && event.buttons === 0) return;
+    if (event.pointerType === "touch" && (event.buttons === 0 || fingers.current.size > 1)) return;
     // A pointer that comes from elsewhere does not carry the hand along.
     const from = last.current;
     last.current = { x: event.clientX, y: event.clientY };
@@ -155,7 +184,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
   const frame = trainer?.scene?.frame ?? null, view = trainer?.scene?.view ?? null;
   const hands = frame?.second ? [frame, frame.second] : frame ? [frame] : [];
   const force = Math.hypot(...(trainer?.ownFrame?.force ?? [0]));
-  const limit = view?.damage_force_n || 10;
+  const limit = view?.damage_force_n || kForceLimit;
   sound.current.sound(force / limit);
 
   return (
@@ -166,7 +195,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
         <ul>
           {listing.scenes.map((entry) => (
             <li key={entry.path}>
-              <button type="button" aria-current={scene === entry.path} disabled={phase === "running" || phase === "loading"} onClick={() => void begin(entry.path)}>
+              <button type="button" aria-current={scene === entry.path} title={entry.path} disabled={phase === "running" || phase === "loading"} onClick={() => void begin(entry.path)}>
                 <span>{entry.path.replace(/\.json$/, "")}</span>
               </button>
             </li>
@@ -193,7 +222,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
         )}
         {phase === "running" && frame && (
           <div class="force-bar" role="meter" aria-label="Force" aria-valuemin={0} aria-valuemax={limit} aria-valuenow={Number(force.toFixed(2))}>
-            <div style={{ height: `${Math.min(100, (100 * force) / limit)}%` }} class={force > limit ? "over" : ""} />
+            <div ref={bar} class={force > limit ? "over" : ""} />
             <output>{newtons(force)}</output>
           </div>
         )}
@@ -222,7 +251,12 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
               </div>
             )}
             <output class="clock">{seconds(frame?.time ?? 0, 1)}</output>
-            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}mouse, arrows: move · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · Esc: end</span>}
+            {!trainer.awaited && isTouch && (
+              <div class="buttons held" role="group" aria-label="Depth and turning">
+                {kHeld.map(([text, key]) => <HeldButton key={key} text={text} onHeld={() => trainer.press(key, false)} />)}
+              </div>
+            )}
+            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}{isTouch ? "one finger: move · two: look around" : "mouse, arrows: move · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · Esc: end"}</span>}
           </div>
         )}
       </div>
@@ -234,7 +268,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
               <input value={output} disabled={phase === "loading"} onInput={(e) => setOutput(e.currentTarget.value)} />
             </label>
             <DeviceForm choice={device} onChoice={setDevice} isDisabled={phase === "loading"} />
-            <ExpertChoice listing={listing} expert={expert} onExpert={setExpert} />
+            <ExpertChoice listing={listing.sessions} expert={expert} onExpert={setExpert} use="shown as a ghost" />
             {device.how && output && <ShownCommand text={command("record", scene || "SCENE.json", "-o", output, ...deviceWords(device))} />}
             {phase === "loading" && <button type="button" onClick={() => loading.current?.abort()}>Cancel</button>}
           </Section>
@@ -259,7 +293,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
               ]} />
             </Section>
             <Section title="Expert">
-              <ExpertChoice listing={listing} expert={expert} onExpert={setExpert} />
+              <ExpertChoice listing={listing.sessions} expert={expert} onExpert={setExpert} use="shown as a ghost" />
               {expert && trainer && (
                 <label class="field">
                   <span>the ghost is</span>
@@ -288,13 +322,13 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
   );
 }
 
-function ExpertChoice({ listing, expert, onExpert }: { listing: Listing; expert: string; onExpert: (path: string) => void }) {
+function ExpertChoice({ listing, expert, onExpert, use }: { listing: Listing["sessions"]; expert: string; onExpert: (path: string) => void; use: string }) {
   return (
     <label class="field">
-      <span>the expert's session, shown as a ghost</span>
+      <span>the expert's session, {use}</span>
       <select value={expert} onChange={(e) => onExpert(e.currentTarget.value)}>
         <option value="">none</option>
-        {listing.sessions.map((s) => <option key={s.path} value={s.path}>{s.path}</option>)}
+        {listing.map((s) => <option key={s.path} value={s.path}>{s.path}</option>)}
       </select>
     </label>
   );
@@ -315,6 +349,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
   const [progress, setProgress] = useState<[number, number] | null>(null);
   const [error, setError] = useState<Error | null>(null);
 
+  const others = listing.sessions.filter((session) => session.path !== ended.path);
   const compare = async () => {
     const progress = (done: number, total: number) => setProgress([done, total]);
     setError(null), setComparison(null), setVerdict(null), progress(0, 1);
@@ -352,7 +387,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
       </Section>
       {ended.path && (
         <Section title="Verify and compare">
-          <ExpertChoice listing={listing} expert={expert} onExpert={onExpert} />
+          <ExpertChoice listing={others} expert={expert} onExpert={onExpert} use="to compare with" />
           {progress ? <Working what={verdict ? "comparing" : "verifying"} done={progress[0]} total={progress[1]} />
             : <button type="button" class="main" onClick={() => void compare()}>{expert ? "Verify and compare" : "Verify"}</button>}
           {verdict && <p class={verdict.same ? "good" : "warning"} role="status">{verdict.text}</p>}

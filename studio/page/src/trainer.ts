@@ -112,6 +112,7 @@ export class Trainer {
     const { controls } = this.viewer;
     controls.enableZoom = this.awaited !== "";
     controls.mouseButtons.LEFT = this.awaited ? three.MOUSE.ROTATE : null;
+    controls.touches = { ONE: this.awaited ? three.TOUCH.ROTATE : null, TWO: three.TOUCH.DOLLY_ROTATE };
     this.view = begun.view;
     this.scene = new StageScene(begun.view);
     this.scene.onFrame = (frame) => this.showGhost(frame);
@@ -253,6 +254,10 @@ export class Trainer {
     const middle = this.box.getCenter(new three.Vector3()), size = this.box.getSize(new three.Vector3());
     const height = Math.abs(up.x) * size.x + Math.abs(up.y) * size.y + Math.abs(up.z) * size.z;
     const right = new three.Vector3().setFromMatrixColumn(this.viewer.camera.matrixWorld, 0);
+    // Of several organs, above the largest one: between them there may be nothing to press.
+    const largest = view.organs.reduce((most, organ) => (organ.spheres > most.spheres ? organ : most));
+    const chosen = view.organs.length > 1 ? new three.Box3(new three.Vector3(...largest.least), new three.Vector3(...largest.most)).getCenter(new three.Vector3()) : middle;
+    const above = chosen.addScaledVector(up, up.dot(middle) + height / 2 - up.dot(chosen));
     for (const own of this.hands) own.tool = -1;
     for (let hand = this.handCount - 1; hand >= 0; --hand) {
       this.led = hand;
@@ -264,7 +269,7 @@ export class Trainer {
         own.turn.copy(orientationOf(held.pointing ?? [0, 0, -1], held.facing));
         this.box.expandByPoint(own.target);
       } else {
-        own.target.copy(middle).addScaledVector(up, height / 2 + (held?.radius_m ?? 0) + 0.02);
+        own.target.copy(above).addScaledVector(up, (held?.radius_m ?? 0) + 0.02);
         if (this.handCount > 1) own.target.addScaledVector(right, hand === 0 ? kApart : -kApart);
         own.turn.setFromUnitVectors(new three.Vector3(0, 0, 1), up);
       }

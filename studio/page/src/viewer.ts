@@ -4,22 +4,26 @@ import { PictureQuality } from "./picture_quality";
 import type { CameraView, SceneView, Vector } from "./protocol";
 import type { StageScene } from "./stage_scene";
 
-/** Of the cameras of a scene the first one, unless organs lie outside of its picture: then the one that sees everything,
-    which is the last. */
-export function firstCamera(view: SceneView): CameraView | undefined {
-  const first = view.cameras[0];
-  if (!first) return undefined;
-  const camera = new three.PerspectiveCamera(first.fov_deg, 16 / 9, 1e-3, 1e3);
-  camera.up.set(...first.up), camera.position.set(...first.eye);
-  camera.lookAt(...first.target);
+/** Whether the box is in the picture of a camera, but for two of its corners. */
+export function seesBox(seen: CameraView, least: Vector, most: Vector): boolean {
+  const camera = new three.PerspectiveCamera(seen.fov_deg, 16 / 9, 1e-3, 1e3);
+  camera.up.set(...seen.up), camera.position.set(...seen.eye);
+  camera.lookAt(...seen.target);
   camera.updateMatrixWorld();
-  const ends = [view.least, view.most];
-  let outside = 0; // corners of the box around everything
+  const ends = [least, most];
+  let outside = 0;
   for (let i = 0; i < 8; ++i) {
     const corner = new three.Vector3(ends[i & 1][0], ends[(i >> 1) & 1][1], ends[i >> 2][2]).project(camera);
     outside += Number(Math.abs(corner.x) > 1 || Math.abs(corner.y) > 1 || corner.z > 1);
   }
-  return outside > 2 ? view.cameras.at(-1) : first;
+  return outside <= 2;
+}
+
+/** Of the cameras of a scene the first one, unless organs lie outside of its picture: then the one that sees everything,
+    which is the last. */
+export function firstCamera(view: SceneView): CameraView | undefined {
+  const first = view.cameras[0];
+  return !first || seesBox(first, view.least, view.most) ? first : view.cameras.at(-1);
 }
 
 const kLookAgain = 2; // whether a picture is done [ms]
@@ -64,6 +68,11 @@ export class Viewer {
     });
     this.observer = new ResizeObserver(() => this.draw());
     this.observer.observe(canvas);
+  }
+
+  /** Whether the browser draws with the processor, so that everything else on the page costs pictures. */
+  get isByProcessor(): boolean {
+    return this.quality.isByProcessor;
   }
 
   set(stage: number, scene: StageScene | null): void {
@@ -187,6 +196,7 @@ export class Viewer {
     this.rim.position.copy(away).multiplyScalar(-0.6).addScaledVector(this.camera.up, 0.8 * away.length()).addScaledVector(right, away.length());
     scenes.forEach((stage, i) => {
       stage.scene.add(this.key, this.rim);
+      if (this.quality.isByProcessor) stage.drawFacing(this.camera.position);
       this.renderer.setViewport(i * part, 0, part, height);
       this.renderer.setScissor(i * part, 0, part, height);
       this.renderer.render(stage.scene, this.camera);

@@ -147,7 +147,7 @@ BENCHMARK(ReadOneMinuteInTheMiddleOfAnHour)->Unit(benchmark::kMillisecond);
 void SeekInTenMinutes(benchmark::State& state) {
   const Folder folder;
   const recordings::SessionStart start = small_start(9, 9, 9);
-  const recordings::WriterOptions options{.wait_when_full = true};
+  const recordings::WriterOptions options{.wait_when_full = true, .keyframe_ticks = 1000};
   std::vector<State> keyframes;
   const Lived lived = live(start, session_ticks, [&](const State& after, const recordings::TickRecord&) {
     if (after.tick % options.keyframe_ticks == 0) keyframes.push_back(after);

@@ -226,14 +226,14 @@ TEST_F(ImportProgram, AnOrganIsAddedToASceneThatIsThereAndItsCommentsStay) {
   // In the same place, which is said; beside; elsewhere and turned.
   const auto within = add({});
   ASSERT_EQ(within.code, 0) << within.err;
-  expect_says(within.out, {"% of the organ lies within organ scene", "lay it beside, or give it another place"});
+  expect_says(within.out, {"% of the organ lies within organ kidney", "lay it beside, or give it another place"});
   write("scene.json", commented);
   const auto added = add({"--beside", "--overwrite"});
   ASSERT_EQ(added.code, 0) << added.err;
   EXPECT_EQ(added.out.find("lies within"), std::string::npos) << added.out;
   const std::string scene = testing::slurp(folder_.path() / "scene.json");
-  expect_says(scene, {"\"name\": \"scene\"", "\"name\": \"spleen\"", "\"preset\": \"spleen\"", "// the author's own\n",
-                      "/* to the end */"});
+  expect_says(scene, {"\"name\": \"scene\"", "\"name\": \"kidney\"", "\"name\": \"spleen\"", "\"preset\": \"spleen\"",
+                      "// the author's own\n", "/* to the end */"});
   const auto check = ctpm({"check", "scene.json"});
   EXPECT_EQ(check.code, 0) << check.err;
   EXPECT_EQ(check.err, "") << "it stands, and the import's camera sees both";
@@ -264,7 +264,7 @@ TEST_F(ImportProgram, AnOrganGetsLayersFromTheSurfaceInwards) {
   const auto picture = ctpm({"preview", "scene.json", "--spheres", "--by", "material", "-o", "scene.png"});
   EXPECT_EQ(picture.code, 0) << picture.err;
   expect_says(picture.out,
-              {"orange: scene, skin down to 6 mm", "blue: scene, fat down to 14 mm", "green: scene, kidney below"});
+              {"orange: kidney, skin down to 6 mm", "blue: kidney, fat down to 14 mm", "green: kidney, kidney below"});
   const auto deep = import_quickly("bean.obj", {"--layer", "skin:80", "--overwrite"});
   EXPECT_EQ(deep.code, 2);
   expect_says(deep.err, {"--layer", "--spheres"});

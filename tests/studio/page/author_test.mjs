@@ -105,9 +105,11 @@ test("a hole that is too wide is told, and closed when its author says so", asyn
   const told = await page.locator("aside .problems").innerText();
   assert.match(told, /^holed\.obj: /);
   await picture(page, "author-holed");
-  await page.locator("aside label:has-text('largest hole') input").fill(/largest_hole_mm (\d+)/.exec(told)[1]);
-  assert.match(await page.locator("aside .command code").innerText(), /--largest-hole-mm \d+/);
-  await button("Import", "aside").click();
+  // What would close it is offered where it was refused.
+  const width = /largest_hole_mm (\d+)/.exec(told)[1];
+  await button(`Close holes up to ${width} mm and import`, "aside").click();
+  assert.equal(await page.locator("aside label:has-text('largest hole') input").inputValue(), width);
+  assert.ok((await page.locator("aside .command code").innerText()).includes(`--largest-hole-mm ${width}`));
   await page.waitForSelector("aside .good:has-text('holed-scene.json')");
   await settled();
 });
@@ -380,12 +382,23 @@ test("a second mesh becomes an organ of the scene, which is moved by its handle"
   await button("Import", "aside").click();
   await page.waitForSelector("aside .good:has-text('spheres')");
   await settled();
-  const organs = (await scene()).organs;
-  assert.equal(organs.length, 2);
-  await page.click(".objects button:has-text('other-kidney-scene')");
+  const { organs, cameras } = await scene();
+  assert.deepEqual(organs.map(({ name }) => name), ["kidney", "kidney-2"]); // what they are, not what their files are called
+  // The camera that the import left sees both, as a picture of the command does, and so does Author.
+  const [was, ...others] = JSON.parse(before).cameras;
+  assert.deepEqual(cameras.slice(1), others);
+  const far = ({ eye_mm, target_mm }) => Math.hypot(...eye_mm.map((x, i) => x - target_mm[i]));
+  assert.ok(far(cameras[0]) > 1.2 * far(was) && cameras[0].target_mm[0] > was.target_mm[0] + 10, JSON.stringify(cameras));
+  const canvas = await page.locator(".view > canvas").boundingBox();
+  for (const name of ["kidney", "kidney-2"]) {
+    await page.locator(".objects button", { has: page.locator(`span:text-is("${name}")`) }).click();
+    const { x, y } = await centreOf(handle(name));
+    assert.ok(x > canvas.x + 20 && x < canvas.x + canvas.width - 20 && y > canvas.y + 20 && y < canvas.y + canvas.height - 20, `${name}: ${x}, ${y}`);
+  }
+  await page.click(".objects button:has-text('kidney-2')");
   await page.waitForTimeout(300);
   await picture(page, "author-two-organs");
-  await drag(await centreOf(handle("other-kidney-scene")), { x: -20, y: -30 });
+  await drag(await centreOf(handle("kidney-2")), { x: -20, y: -30 });
   const moved = (await scene()).organs[1].at_mm;
   assert.notDeepEqual(moved, organs[1].at_mm);
   await settled();
@@ -403,18 +416,18 @@ test("a second mesh becomes an organ of the scene, which is moved by its handle"
 test("an organ is turned by its rings and sized by its cubes, and by its text", async () => {
   const before = await text(), organ = async () => (await scene()).organs[1];
   const numbers = (nth) => page.locator("#panel .vector").nth(nth).locator("input").evaluateAll((inputs) => inputs.map((input) => Number(input.value)));
-  await page.click(".objects button:has-text('other-kidney-scene')");
+  await page.click(".objects button:has-text('kidney-2')");
   await button("turn").click();
-  const middle = await centreOf(handle("other-kidney-scene"));
+  const middle = await centreOf(handle("kidney-2"));
   await drag({ x: middle.x + 18, y: middle.y - 14 }, { x: 60, y: 30 });
-  const turned = await organ(), after = await centreOf(handle("other-kidney-scene"));
+  const turned = await organ(), after = await centreOf(handle("kidney-2"));
   assert.ok(Math.max(...turned.turn_deg.map(Math.abs)) > 10, `${turned.turn_deg}`);
   assert.ok(Math.hypot(after.x - middle.x, after.y - middle.y) < 2, "its middle stays where it is");
   assert.deepEqual(await numbers(1), turned.turn_deg);
   await settled();
   await picture(page, "author-organ-turned");
   await button("size").click();
-  const from = await centreOf(handle("other-kidney-scene"));
+  const from = await centreOf(handle("kidney-2"));
   await drag({ x: from.x + 45, y: from.y }, { x: 30, y: 0 });
   const sized = await organ();
   assert.ok(sized.scale > 1.2, `${sized.scale}`);
@@ -423,7 +436,7 @@ test("an organ is turned by its rings and sized by its cubes, and by its text", 
   // The same by its text, which the numbers follow; the program takes what was made.
   await write((await text()).replace(`"scale": ${sized.scale}`, '"scale": 1.1'));
   await settled();
-  await page.click(".objects button:has-text('other-kidney-scene')");
+  await page.click(".objects button:has-text('kidney-2')");
   await page.waitForFunction(() => [...document.querySelectorAll("#panel label")].some((label) => label.textContent.startsWith("scale of the mesh") && label.lastChild.value === "1.1"));
   assert.deepEqual((await save()).organs[1], { ...sized, scale: 1.1 });
   for (let i = 0; i < 3; ++i) await button("Undo").click();

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, picture, reading, seriousFindings } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm";
 let folder, studio, page, expert, clumsy;
@@ -71,6 +71,36 @@ test("a session opens, and any moment of it is a press away", async () => {
   assert.equal((await reading(page, "force")).toFixed(2), Number(row[14]).toFixed(2));
   assert.deepEqual(await seriousFindings(page), []);
   await picture(page, "review-moment");
+});
+
+test("where the browser draws with the processor, what faces away is left out, wherever it is seen from", async () => {
+  await page.evaluate(() => {
+    globalThis.largest = 0; // triangles of one draw: those of the organ
+    const draw = WebGL2RenderingContext.prototype.drawElements;
+    WebGL2RenderingContext.prototype.drawElements = function (mode, count, ...of) {
+      globalThis.largest = Math.max(globalThis.largest, count / 3);
+      return draw.call(this, mode, count, ...of);
+    };
+  });
+  // Before anything is cut.
+  await page.locator(".scrub").evaluate((slider) => {
+    slider.value = "0";
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+  });
+  await replayedQuiet();
+  await page.waitForTimeout(600); // the picture that stands still
+  const obj = readFileSync(join(paths.source, "scenes", "organs", "kidney.obj"), "utf8"), all = obj.split("\n").filter((line) => line.startsWith("f ")).length;
+  await page.locator(".view > canvas").focus();
+  const shares = [];
+  for (let turn = 0; turn < 4; ++turn) {
+    await page.evaluate(() => (globalThis.largest = 0));
+    for (let i = 0; i < 8; ++i) await page.keyboard.press("d");
+    await page.waitForFunction(() => globalThis.largest > 0);
+    shares.push((await page.evaluate(() => globalThis.largest)) / all);
+  }
+  console.log(`of ${all} triangles are drawn, from four sides: ${shares.map((share) => `${(100 * share).toFixed(0)} %`).join(", ")}`);
+  for (const share of shares) assert.ok(share > 0.3 && share < 0.7, `${shares}`);
+  for (let i = 0; i < 32; ++i) await page.keyboard.press("a");
 });
 
 test("full stop and comma zoom the timeline, + and - the view alone", async () => {
@@ -262,6 +292,25 @@ test("two sessions beside each other, compared", async () => {
   await page.waitForTimeout(500);
   assert.deepEqual(await seriousFindings(page), []);
   await picture(page, "review-compare");
+});
+
+test("it is said whose session is whose, and they can be swapped at the same moment of both", async () => {
+  const whose = async () => (await page.locator(".captions b").allInnerTexts()).map((text) => text.replace(/ [-\d.]+ s$/, ""));
+  assert.deepEqual(await whose(), [`expert: ${kExpert}`, `trainee: ${kClumsy}`]);
+  await page.click("#panel button:has-text('first cut')");
+  const times = async () => (await page.locator(".captions b").allInnerTexts()).map((text) => Number(/([-\d.]+) s$/.exec(text)[1]));
+  const before = await times();
+  const swapped = async (first, second) => {
+    await page.click("#panel button:has-text('Swap')");
+    await page.waitForFunction((text) => document.querySelector(".captions .first")?.textContent.includes(text) && document.querySelector(".captions .second"), first);
+    await page.waitForSelector("#panel button[aria-pressed=true]:text-is('first cut')");
+    assert.deepEqual(await whose(), [`expert: ${first}`, `trainee: ${second}`]);
+    assert.equal(await page.locator("#panel .command code").first().innerText(), `ctpm compare ${first} ${second} -o report`);
+  };
+  await swapped(kClumsy, kExpert);
+  assert.deepEqual(await times(), [before[1], before[0]]);
+  await swapped(kExpert, kClumsy);
+  assert.deepEqual(await times(), before);
 });
 
 test("along the path both tools are at the same place of it, and by hand as far apart in time as one says", async () => {

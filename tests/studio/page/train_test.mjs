@@ -437,6 +437,46 @@ test("a recording is there up to the moment when the program was killed", async 
   assert.ok(info.duration_s > 1 && info.max_force_n > 0.1, JSON.stringify(info));
 });
 
+test("on a tablet one finger moves the tool, two look around, and buttons do what keys do", async () => {
+  await page.click("header nav button:has-text('Train')");
+  await page.setViewportSize({ width: 820, height: 1180 });
+  const input = await page.context().newCDPSession(page);
+  await input.send("Emulation.setTouchEmulationEnabled", { enabled: true, maxTouchPoints: 5 });
+  const touch = (type, ...points) => input.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(({ x, y }, id) => ({ x, y, id })) });
+  const tap = async (selector) => {
+    const box = await page.locator(selector).first().boundingBox();
+    await touch("touchStart", { x: box.x + box.width / 2, y: box.y + box.height / 2 });
+    await touch("touchEnd");
+  };
+  await page.locator("aside input").first().fill("");
+  await tap(".list button:has-text('kidney')");
+  await page.waitForSelector(".view.running .force-bar");
+  const { right, up, deep } = handAxes(), box = await page.locator(".view canvas").boundingBox();
+  const start = await handAtRest(), began = { x: box.x + box.width / 2, y: box.y + 60 };
+  const slide = async (by, ...fingers) => {
+    await touch("touchStart", ...fingers);
+    for (let i = 1; i <= 10; ++i) await touch("touchMove", ...fingers.map(({ x, y }) => ({ x: x + (by.x * i) / 10, y: y + (by.y * i) / 10 })));
+    await touch("touchEnd");
+    return minus(await handAtRest(), start);
+  };
+  const moved = await slide({ x: 60, y: 0 }, began);
+  assert.ok(dot(moved, right) > 5e-3 && Math.abs(dot(moved, up)) < 1e-5 && Math.abs(dot(moved, deep)) < 1e-5, `${moved}`);
+  assert.ok(Math.hypot(...(await slide({ x: -60, y: 0 }, began))) < 1e-3, "the view was not turned on the way");
+  await tap("button:text-is('farther')");
+  const away = minus(await handAtRest(), start);
+  assert.ok(dot(away, deep) > 0.5e-3 && Math.abs(dot(away, right)) < 1e-3, `${away}`);
+  // Two fingers turn the view, and the hand stays.
+  const picture0 = await page.locator(".view > canvas").screenshot(), before = await handAtRest();
+  await slide({ x: 80, y: 0 }, { x: began.x - 60, y: began.y + 200 }, { x: began.x + 60, y: began.y + 200 });
+  assert.ok(Math.hypot(...minus(await handAtRest(), before)) < 1e-6);
+  assert.ok(!picture0.equals(await page.locator(".view > canvas").screenshot()));
+  await picture(page, "train-tablet");
+  await tap("button:text-is('End')");
+  await page.waitForSelector("button:has-text('Train again')");
+  await tap("button:has-text('Train again')");
+  await input.send("Emulation.setTouchEmulationEnabled", { enabled: false });
+});
+
 test("it fits a tablet", async () => {
   await page.click("header nav button:has-text('Train')");
   await page.setViewportSize({ width: 820, height: 1180 });

@@ -1,6 +1,7 @@
 // Measures the studio's server as a page sees it, without a browser:
 //   ctpm_studio_benchmark review FOLDER SESSION [WAIT_S]    opening, and seeks all over the session, at once and later
-//   ctpm_studio_benchmark train FOLDER SCENE [ROUNDS]       what pages cost the thread that ticks: train_benchmark.h
+//   ctpm_studio_benchmark train FOLDER SCENE [ROUNDS [SECONDS]]   what pages cost the thread that ticks:
+//   train_benchmark.h
 
 #include <algorithm>
 #include <cmath>
@@ -94,8 +95,10 @@ int review(const std::string& folder, const std::string& session, double wait_s)
 int main(int argc, char** argv) {
   if (argc >= 4 && argc <= 5 && std::string(argv[1]) == "review")
     return ctpm::review(argv[2], argv[3], argc == 5 ? std::atof(argv[4]) : 20);
-  if (argc >= 4 && argc <= 5 && std::string(argv[1]) == "train")
-    return ctpm::benchmark_training(argv[2], argv[3], argc == 5 ? std::atoi(argv[4]) : 20);
-  std::fprintf(stderr, "usage: ctpm_studio_benchmark review FOLDER SESSION [WAIT_S] | train FOLDER SCENE [ROUNDS]\n");
+  if (argc >= 4 && argc <= 6 && std::string(argv[1]) == "train")
+    return ctpm::benchmark_training(argv[2], argv[3], argc >= 5 ? std::atoi(argv[4]) : 20,
+                                    argc == 6 ? std::atof(argv[5]) : 12);
+  std::fprintf(stderr,
+               "usage: ctpm_studio_benchmark review FOLDER SESSION [WAIT_S] | train FOLDER SCENE [ROUNDS [SECONDS]]\n");
   return 2;
 }

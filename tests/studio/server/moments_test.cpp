@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -10,12 +11,15 @@
 #include "studio/server/cuts_ahead.h"
 #include "studio/server/glimpse.h"
 #include "studio/server/moments.h"
+#include "studio/server/spare_cursors.h"
 #include "studio/server/urgency.h"
 
 namespace ctpm::server {
 namespace {
 
 const std::string kCut = std::string(CTPM_SHIPPED_SESSIONS) + "/kidney-cut-expert.ctpm";
+
+const std::string kTwoCuts = std::string(CTPM_SHIPPED_SESSIONS) + "/kidney-cut-clumsy.ctpm";
 
 /// Waits for a thread of low priority.
 void wait_until(const std::function<bool()>& is_so) {
@@ -27,13 +31,15 @@ TEST(Moments, WhatIsKeptIsWhatTheReplayHasWithItsSweptSurface) {
   ASSERT_TRUE(moments);
   auto reader = recordings::SessionReader::open(kCut);
   auto cursor = recordings::ReplayCursor::create(*reader);
+  const std::vector<std::int64_t> keyframes = *reader->keyframe_ticks();
   std::size_t shared = 0;
   for (std::int64_t tick = 1000; tick + 10 < reader->tick_count(); tick += 10 * (*moments)->spacing()) {
     ASSERT_TRUE(cursor->seek(tick));
     (*moments)->keep(tick, cursor->state(), true);
     const Moments::Place place = (*moments)->before(tick + 10);
     ASSERT_EQ(place.first, tick);
-    ASSERT_TRUE(place.second || tick % 1000 == 0);  // keyframes are read in the background
+    // Keyframes are read in the background.
+    ASSERT_TRUE(place.second || std::binary_search(keyframes.begin(), keyframes.end(), tick));
     const Result<Moment> moment = (*moments)->read(place, *reader);
     ASSERT_TRUE(moment);
     EXPECT_EQ(moment->tick, tick);
@@ -95,6 +101,30 @@ TEST(Moments, NothingIsReplayedAheadWhileATrainingRunsOrSomebodyWaits) {
   wait_until([&] { return (*moments)->share() > 0; });
 }
 
+TEST(SpareCursors, OneIsReadyAtEachCutThatStaysAndGoesOnAsAnyOther) {
+  auto reader = recordings::SessionReader::open(kTwoCuts);
+  ASSERT_TRUE(reader);
+  SpareCursors spares(*reader);
+  wait_until([&] { return spares.is_done(); });
+  const std::size_t made = spares.count();
+  EXPECT_GE(made, 2u);  // the first cut stays until the second one begins
+  EXPECT_LE(made, SpareCursors::kMost);
+  EXPECT_FALSE(spares.take(reader->start().initial_state));  // whole tissue has nothing to build
+  const std::vector<std::int64_t> keyframes = *reader->keyframe_ticks();
+  std::size_t taken = 0;
+  for (const std::int64_t tick : keyframes) {
+    const State state = reader->keyframe_at_or_before(tick)->state;
+    std::optional<recordings::ReplayCursor> spare = spares.take(state);
+    if (!spare) continue;
+    ++taken;
+    spare->resume(tick, state);
+    for (int i = 0; i < 20 && spare->tick() < reader->tick_count(); ++i) ASSERT_TRUE(spare->step());
+    EXPECT_TRUE(spare->same_so_far()) << "keyframe " << tick;
+    EXPECT_FALSE(spares.take(state)) << "each is taken once";
+  }
+  EXPECT_EQ(taken, made);
+}
+
 TEST(CutsAhead, EveryKeyframesCutIsDrawnAndAGlimpseHasTheLargestPartOfItsOwn) {
   auto reader = recordings::SessionReader::open(kCut);
   const Model& model = reader->start().model;
@@ -106,20 +136,25 @@ TEST(CutsAhead, EveryKeyframesCutIsDrawnAndAGlimpseHasTheLargestPartOfItsOwn) {
   wait_until([&] { return cuts->of(last) != nullptr; });
   EXPECT_GT(cuts->of(last)->surfaces[0].triangle.size(), whole);
   std::size_t points = 0;
-  for (const std::int64_t tick : keyframes) {
-    const State state = reader->keyframe_at_or_before(tick)->state;
+  int in_the_middle = 0;
+  auto cursor = recordings::ReplayCursor::create(*reader);
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    const State state = reader->keyframe_at_or_before(keyframes[i])->state;
     const std::shared_ptr<const DrawnCut> drawn = cuts->of(state);
-    ASSERT_TRUE(drawn) << "keyframe " << tick;
+    ASSERT_TRUE(drawn) << "keyframe " << keyframes[i];
     EXPECT_EQ(drawn, cuts->nearest(state));
     points = std::max(points, drawn->key.points());
-    // A moment later, in the middle of a cut, there is nothing better yet.
-    auto cursor = recordings::ReplayCursor::create(*reader);
-    if (tick + 200 < reader->tick_count() && cursor->seek(tick + 200) &&
-        cursor->state().swept.size() != state.swept.size()) {
-      EXPECT_EQ(cuts->of(cursor->state()), nullptr);
-      EXPECT_EQ(cuts->nearest(cursor->state()), drawn);
-    }
+    // Later, in the middle of a cut that goes on to the next keyframe, there is nothing better yet.
+    if (i + 1 == keyframes.size()) continue;
+    const State next = reader->keyframe_at_or_before(keyframes[i + 1])->state;
+    ASSERT_TRUE(cursor && cursor->seek((keyframes[i] + keyframes[i + 1]) / 2));
+    const std::size_t now = cursor->state().swept.size();
+    if (now == state.swept.size() || now == next.swept.size()) continue;
+    EXPECT_EQ(cuts->of(cursor->state()), nullptr);
+    EXPECT_EQ(cuts->nearest(cursor->state()), drawn);
+    ++in_the_middle;
   }
+  EXPECT_GT(in_the_middle, 3);
   EXPECT_EQ(points, last.swept.size());
 }
 

@@ -134,6 +134,14 @@ TEST_F(Reviewing, TrianglesComeBeforeTheirFrameAndOnlyWhenACutChangedThem) {
   EXPECT_EQ(shown.front(), shown.back());
   EXPECT_GT(*std::max_element(shown.begin(), shown.end()), shown.front());
   EXPECT_EQ(value_at<std::uint32_t>(triangles.begin()->second, 16 + 8), shown.front());
+  // The outside of what is cut has triangles of its own, and shines as the whole organ does: its normals are corrected.
+  for (const auto& [topology, message] : triangles) {
+    const auto head = [&](std::size_t n) { return std::size_t(value_at<std::uint32_t>(message, 16 + 4 * n)); };
+    const std::size_t vertices = head(0), outer = head(1), at = 32 + 12 * head(2) + (2 * vertices + 3) / 4 * 4;
+    const std::size_t corrected = value_at<std::uint32_t>(message, at);
+    EXPECT_EQ(corrected, head(2) == shown.front() ? 0 : outer) << "topology " << topology;
+    EXPECT_EQ(message.size(), at + 4 + 4 * corrected + (2 * corrected + 3) / 4 * 4);
+  }
 }
 
 TEST_F(Reviewing, AGlimpseIsAtTheRecordedPoseAndTheReplayFollows) {

@@ -139,6 +139,11 @@ class SocketClient {
     socket_.handshake(serving.host(), "/socket");
   }
 
+  /// The kernel keeps little of what this client does not read.
+  void keep_little() {
+    boost::beast::get_lowest_layer(socket_).socket().set_option(boost::asio::socket_base::receive_buffer_size(1 << 16));
+  }
+
   void send(const nlohmann::json& message) { send_text(message.dump()); }
   void send_text(const std::string& text) {
     socket_.text(true);

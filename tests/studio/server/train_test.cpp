@@ -4,8 +4,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cmath>
 #include <fstream>
+#include <thread>
+#include <utility>
 
 #include "studio/server/page_hand.h"
 #include "tests/studio/devices/igtl_client.h"
@@ -140,6 +143,38 @@ TEST_F(TrainingTest, TwoHandsAreLedAndRecordedAndShown) {
   ASSERT_FALSE(poses["second_poses"].empty());
   EXPECT_EQ(poses["second_poses"].back()[0], 1 - first);
   EXPECT_EQ(info_of("two.ctpm")["values"]["second_device_samples_refused"], 0);
+}
+
+TEST_F(TrainingTest, APageThatDoesNotReadFor10SecondsHoldsUpNoTickAndThenSeesTheNewestOne) {
+  const Serving serving(folder_.path());
+  SocketClient slow(serving), other(serving);
+  slow.keep_little();
+  const nlohmann::json begun = slow.call("train.begin", {{"scene", "kidney.json"}, {"stage", 2}});
+  ASSERT_TRUE(begun.contains("result")) << begun;
+  int answers = 0;
+  std::atomic<bool> ends{false};
+  std::thread goes_on([&] {
+    for (; !ends; ++answers) EXPECT_TRUE(other.call("folder.list", nlohmann::json::object()).contains("result"));
+  });
+  constexpr int kPoses = 1250;  // of 8 ms
+  press(slow, begun["result"]["view"], kPoses, 1);
+  ends = true;
+  goes_on.join();
+  EXPECT_GT(answers, 100);  // while it did not read
+
+  // What was on its way still comes; the first frame after it is the newest one, and says how many were left out.
+  double before = 0, tick = 0;
+  std::uint32_t missed = 0;
+  for (int i = 0; missed == 0 && i < kPoses; ++i) {
+    const std::string frame = slow.frame();
+    before = std::exchange(tick, value_at<double>(frame, 32)), missed = value_at<std::uint32_t>(frame, 12);
+  }
+  EXPECT_GT(missed, 50u);
+  EXPECT_GT(tick - before, double(missed));  // the ticks went on without a reader
+  slow.send({{"id", 99}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
+  const nlohmann::json ended = event_of(slow, "train_ended");
+  EXPECT_TRUE(ended["errors"].empty()) << ended;
+  EXPECT_LT(ended["ticks"].get<double>() - tick, 0.5 * (tick - before)) << "it was not the newest one";
 }
 
 TEST_F(TrainingTest, WhatNobodyKeepsLeavesNothing) {
