@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/model/model.h"
+#include "recordings/tick_parts.h"
 
 namespace ctpm::recordings {
 
@@ -40,6 +41,7 @@ struct Event {
   double force = 0;                  ///< on the tool [N]; 0: the force is not the reason
   double force_limit = 0;            ///< damage force of the scene [N]
   double late = 0;                   ///< time from the tick's deadline to its end [s]
+  TickParts parts = {};              ///< what the time of a late tick went to; all 0 in sessions that did not measure it
   std::string reason = {};           ///< why the device counts as lost
   double held = 0;                   ///< how long the last valid pose was held [s]
   std::int64_t refused_samples = 0;  ///< device samples refused while the pose was held
@@ -70,7 +72,14 @@ void for_each_value(Event_& e, Visit&& visit) {
   }
   if (give(EventKind::damage, EventKind::press_reached_force, EventKind::press_gave_up)) visit("force_n", e.force);
   if (give(EventKind::damage)) visit("force_limit_n", e.force_limit);
-  if (give(EventKind::late_tick)) visit("late_s", e.late);
+  if (give(EventKind::late_tick)) {
+    visit("late_s", e.late);
+    visit("solver_s", e.parts.solver);
+    visit("cut_s", e.parts.cut);
+    visit("input_s", e.parts.input);
+    visit("recorder_s", e.parts.recorder);
+    visit("machine_s", e.parts.machine);
+  }
   if (give(EventKind::device_lost)) visit("reason", e.reason);
   if (give(EventKind::device_back)) {
     visit("held_s", e.held);

@@ -128,9 +128,29 @@ recordings::Event full_event(std::int32_t kind) {
   event.kind = static_cast<recordings::EventKind>(kind);
   event.tick = 3, event.tool = 1, event.severed = 4, event.organ = 0, event.pieces = 2, event.status = 3;
   event.depth = 0.01, event.depth_limit = 0.008, event.force = 1.5, event.force_limit = 1.25, event.late = 1e-3;
+  event.parts = {1e-3, 2e-3, 3e-3, 4e-3, 5e-3};
   event.reason = "it hung up", event.held = 0.4, event.refused_samples = 7, event.sphere = 5;
   event.cells = 6;
   return event;
+}
+
+TEST(Event, ALateTickTellsWithoutWhatItWouldHaveBeenInTime) {
+  using recordings::LateCause;
+  const auto cause = [](const recordings::TickParts& parts) { return recordings::late_cause(parts, 1e-3); };
+  EXPECT_EQ(cause({}), LateCause::unknown) << "sessions that did not measure it";
+  EXPECT_EQ(cause({.solver = 1.2e-3, .cut = 0.3e-3, .machine = 0.1e-3}), LateCause::solver);
+  EXPECT_EQ(cause({.solver = 0.7e-3, .cut = 0.6e-3, .recorder = 0.1e-3}), LateCause::cut);
+  EXPECT_EQ(cause({.solver = 0.7e-3, .input = 0.6e-3}), LateCause::input);
+  EXPECT_EQ(cause({.solver = 0.7e-3, .recorder = 0.4e-3, .machine = 0.1e-3}), LateCause::recorder);
+  EXPECT_EQ(cause({.solver = 0.7e-3, .cut = 0.2e-3, .machine = 0.2e-3}), LateCause::machine);
+  Model model;
+  const recordings::Event late{.kind = recordings::EventKind::late_tick,
+                               .late = 0.4e-3,
+                               .parts = {.solver = 0.7e-3, .cut = 0.6e-3, .recorder = 0.1e-3}};
+  EXPECT_EQ(recordings::describe(late, model),
+            "tick ended 0.4 ms late, because of the cut: solver 0.7 ms, cut 0.6 ms, recorder 0.1 ms");
+  EXPECT_EQ(recordings::describe({.kind = recordings::EventKind::late_tick, .late = 0.4e-3}, model),
+            "tick ended 0.4 ms late");
 }
 
 TEST(Event, TissueIsInsideOutFromOneEventToTheOther) {
@@ -177,7 +197,7 @@ TEST(Session, AnEventStoresTheFieldsOfItsKindAndNoOthers) {
         expected.force = full.force, expected.force_limit = full.force_limit;
         break;
       case recordings::EventKind::late_tick:
-        expected.late = full.late;
+        expected.late = full.late, expected.parts = full.parts;
         break;
       case recordings::EventKind::turned_inside_out:
       case recordings::EventKind::came_back:
