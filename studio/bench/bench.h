@@ -43,7 +43,7 @@ struct BenchStudy {
   reports::Section section;
   reports::Table points;
   std::vector<std::string> sentences;
-  std::vector<CostPoint> costs = {};    ///< of choices about one organ, for the diagram that compares the studies
+  std::vector<CostPoint> costs = {};   ///< of choices about one organ, for the diagram that compares the studies
   std::vector<LeftOut> left_out = {};  ///< of that diagram
 };
 

@@ -139,7 +139,7 @@ Result<BenchStudy> study_of(const loading::LoadedScene& own, bool is_quick, cons
     if (f.is_on_front) study.points.rows.back().back() = std::string("front");
     if (why.empty() && f.feels)
       study.costs.push_back({name, "space", "r = " + output::short_number(1e3 * f.organ.radius, 3) + " mm",
-                           1e3 * percentile(f.organ.run.seconds, 0.5), f.force_error, &f - fillings.data() == 2});
+                             1e3 * percentile(f.organ.run.seconds, 0.5), f.force_error, &f - fillings.data() == 2});
   }
   if (!why.empty()) study.left_out.push_back({name, "space", why});
   study.section.plots = {plot_of(fillings, false), plot_of(fillings, true)};

@@ -318,8 +318,9 @@ void print_times(const Plan& plan) {
       print("  %-18s p50 %.3f ms, p99 %.3f ms%s, %lld ticks\n", session::name_of(deed), 1e3 * times.p50,
             1e3 * times.p99, own_text(times).c_str(), (long long)times.ticks);
   if (!plan.holds() && !plan.is_told())
-    return print("whether it holds %s at p99 cannot be told: other programs held processors that its %d threads share\n",
-                 rate.c_str(), plan.cost->threads);
+    return print(
+        "whether it holds %s at p99 cannot be told: other programs held processors that its %d threads share\n",
+        rate.c_str(), plan.cost->threads);
   const bool is_alone = plan.cost->lost_share < kFewLost;
   print("%s %s at p99%s\n", plan.holds() ? "holds" : "does not hold", rate.c_str(),
         is_alone ? "" : ", if other programs leave it a processor");

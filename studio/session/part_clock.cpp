@@ -14,7 +14,9 @@ using Clock = PartClock::Clock;
 /// aside for less makes no tick late.
 constexpr double kWorthALook = 50e-6;
 
-double between(Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double>(to - from).count(); }
+double between(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
 
 double thread_seconds() {
   timespec now{};

@@ -55,7 +55,10 @@ Result<SessionCost> measure_session(const loading::LoadedScene& scene, const Scr
   if (!outcome) return outcome.errors();
   if (running.should_stop && running.should_stop()) return Error{scene.path, "stopped", ""};
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  SessionCost cost{*outcome, {}, running.threads, double(std::clock() - work) / CLOCKS_PER_SEC / taken.count(),
+  SessionCost cost{*outcome,
+                   {},
+                   running.threads,
+                   double(std::clock() - work) / CLOCKS_PER_SEC / taken.count(),
                    all > 0 ? lost / all : 0};
   for (const Deed deed : kDeeds) cost.times[std::size_t(deed)] = times.of(deed);
   return cost;

@@ -73,9 +73,7 @@ std::string info_json(const recordings::SessionReader& reader, const SessionInfo
   const LateTicks late = late_ticks_of(events, model.tick);
   for (const recordings::LateCause cause : recordings::kLateCauses)
     json.member(recordings::name_of(cause), late.of(cause));
-  json.end_object()
-      .member("tick_time_p50_s", s.tick_time_p50)
-      .member("tick_time_p99_s", s.tick_time_p99);
+  json.end_object().member("tick_time_p50_s", s.tick_time_p50).member("tick_time_p99_s", s.tick_time_p99);
   json.member("tick_time_p999_s", s.tick_time_p999).member("tick_time_max_s", s.tick_time_max);
   json.member("input_age_p50_s", s.input_age_p50)
       .member("input_age_p99_s", s.input_age_p99)

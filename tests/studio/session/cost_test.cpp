@@ -124,7 +124,7 @@ TEST_F(SessionCost, RadiiThatHoldTheRateAreThoseOfASessionThatWasMeasured) {
   const loading::LoadedScene scene = load(false);
   session::SessionCost dear;  // as a slower machine would have measured
   dear.times[std::size_t(Deed::contact)] = {100, 2 * scene.built.model.tick, 3 * scene.built.model.tick,
-                                              3 * scene.built.model.tick};
+                                            3 * scene.built.model.tick};
   const auto fitting = session::find_fitting_radius(scene, {}, script, dear, {});
   ASSERT_TRUE(fitting) << zoo::text_of(fitting.errors());
   ASSERT_TRUE(*fitting);
