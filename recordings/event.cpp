@@ -1,9 +1,12 @@
 #include "recordings/event.h"
 
 #include <cstdio>
+#include <utility>
 
 namespace ctpm::recordings {
 namespace {
+
+constexpr double kLeastTold = 1e-6;  ///< of the parts of a tick [s]
 
 /// Formats `number`; the format takes one double.
 std::string with_number(const char* format, double number) {
@@ -26,6 +29,21 @@ std::string describe_damage(const Event& event, const Model& model) {
   return with_number("depth of %.3g mm", 1e3 * event.depth) +
          with_number(" passes the damage limit of %.3g mm", 1e3 * event.depth_limit) + " of " +
          name_in(model.organs, event.organ, "organ");
+}
+
+std::string describe_late(const Event& event, const Model& model) {
+  const std::string late = with_number("tick ended %.3g ms late", 1e3 * event.late);
+  const LateCause cause = late_cause(event.parts, model.tick);
+  if (cause == LateCause::unknown) return late;
+  std::string parts;
+  for (const auto& [part, seconds] : {std::pair{LateCause::solver, event.parts.solver},
+                                      {LateCause::cut, event.parts.cut},
+                                      {LateCause::input, event.parts.input},
+                                      {LateCause::recorder, event.parts.recorder},
+                                      {LateCause::machine, event.parts.machine}})
+    if (seconds >= kLeastTold)
+      parts += (parts.empty() ? ": " : ", ") + std::string(name_of(part)) + with_number(" %.3g ms", 1e3 * seconds);
+  return late + ", because of the " + name_of(cause) + parts;
 }
 
 std::string of_second_hand(const Event& event) { return event.hand == 0 ? "" : "second hand: "; }
@@ -79,7 +97,7 @@ std::string describe(const Event& event, const Model& model) {
     case EventKind::damage:
       return describe_damage(event, model);
     case EventKind::late_tick:
-      return with_number("tick ended %.3g ms late", 1e3 * event.late);
+      return describe_late(event, model);
     case EventKind::device_lost:
       return of_second_hand(event) + event.reason + "; the pose is held";
     case EventKind::device_back:

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/model/model.h"
+#include "recordings/tick_parts.h"
 
 namespace ctpm::recordings {
 
@@ -31,17 +32,18 @@ enum class EventKind : std::int32_t {
 struct Event {
   std::int64_t tick = 0;
   EventKind kind = EventKind::note;
-  std::int32_t hand = 0;             ///< whose device, or whose press: 0 the first, 1 the second
-  std::int32_t tool = -1;            ///< tool that touches or cuts: index into Model::tools
-  std::int32_t severed = 0;          ///< elements severed in the tick in which the cut begins
-  std::int32_t organ = -1;           ///< organ whose damage depth was exceeded: index into Model::organs
-  double depth = 0;                  ///< largest displacement of a touched sphere [m]; 0: the depth is not the reason
-  double depth_limit = 0;            ///< damage depth of the organ [m]
-  double force = 0;                  ///< on the tool [N]; 0: the force is not the reason
-  double force_limit = 0;            ///< damage force of the scene [N]
-  double late = 0;                   ///< time from the tick's deadline to its end [s]
-  std::string reason = {};           ///< why the device counts as lost
-  double held = 0;                   ///< how long the last valid pose was held [s]
+  std::int32_t hand = 0;     ///< whose device, or whose press: 0 the first, 1 the second
+  std::int32_t tool = -1;    ///< tool that touches or cuts: index into Model::tools
+  std::int32_t severed = 0;  ///< elements severed in the tick in which the cut begins
+  std::int32_t organ = -1;   ///< organ whose damage depth was exceeded: index into Model::organs
+  double depth = 0;          ///< largest displacement of a touched sphere [m]; 0: the depth is not the reason
+  double depth_limit = 0;    ///< damage depth of the organ [m]
+  double force = 0;          ///< on the tool [N]; 0: the force is not the reason
+  double force_limit = 0;    ///< damage force of the scene [N]
+  double late = 0;           ///< time from the tick's deadline to its end [s]
+  TickParts parts = {};      ///< what the time of a late tick went to; all 0 in sessions that did not measure it
+  std::string reason = {};   ///< why the device counts as lost
+  double held = 0;           ///< how long the last valid pose was held [s]
   std::int64_t refused_samples = 0;  ///< device samples refused while the pose was held
   std::int32_t pieces = 0;           ///< increase in the number of loose pieces over the tick
   std::int32_t status = 0;           ///< StepStatus of a step that was refused
@@ -70,7 +72,14 @@ void for_each_value(Event_& e, Visit&& visit) {
   }
   if (give(EventKind::damage, EventKind::press_reached_force, EventKind::press_gave_up)) visit("force_n", e.force);
   if (give(EventKind::damage)) visit("force_limit_n", e.force_limit);
-  if (give(EventKind::late_tick)) visit("late_s", e.late);
+  if (give(EventKind::late_tick)) {
+    visit("late_s", e.late);
+    visit("solver_s", e.parts.solver);
+    visit("cut_s", e.parts.cut);
+    visit("input_s", e.parts.input);
+    visit("recorder_s", e.parts.recorder);
+    visit("machine_s", e.parts.machine);
+  }
   if (give(EventKind::device_lost)) visit("reason", e.reason);
   if (give(EventKind::device_back)) {
     visit("held_s", e.held);

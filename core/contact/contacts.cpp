@@ -33,10 +33,10 @@ void sort_by_point(Touched& touched) {
 
 }  // namespace
 
-Contacts::Contacts(const Model& model, const elements::Kernels& kernels)
+Contacts::Contacts(const Model& model, const elements::Kernels& kernels, StageWatch* watch)
     : model_(model),
       bodies_(surface::bodies_of(model)),
-      cuts_(model),
+      cuts_(model, watch),
       ball_(model, bodies_, cuts_, kernels),
       body_contact_(model, bodies_, cuts_),
       obstacles_(model, bodies_, cuts_),

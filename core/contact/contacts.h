@@ -18,6 +18,7 @@
 #include "core/elements/axial.h"
 #include "core/elements/kernels/kernels.h"
 #include "core/model/model.h"
+#include "core/model/stage.h"
 #include "core/model/state_view.h"
 
 namespace ctpm::contact {
@@ -54,8 +55,8 @@ enum class Linearisation {
 /// is destroyed is a bug and aborts.
 class Contacts {
  public:
-  /// `model` must outlive the Contacts.
-  Contacts(const Model& model, const elements::Kernels& kernels);
+  /// `model` must outlive the Contacts, and so must `watch`, if it is not null.
+  Contacts(const Model& model, const elements::Kernels& kernels, StageWatch* watch = nullptr);
 
   /// The pins' contacts in a step of `h` [s] from `position` [m] to the hands at `share` of the tick.
   static Pins pins(const HeldTools& tools, const Vec3Array& position, double share, double h);

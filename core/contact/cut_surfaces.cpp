@@ -48,11 +48,11 @@ static bool is_same(const State& surface, const State& state, std::size_t rows) 
   return true;
 }
 
-CutSurfaces::CutSurfaces(const Model& model) : model_(model), points_(model) {
+CutSurfaces::CutSurfaces(const Model& model, StageWatch* watch) : model_(model), watch_(watch), points_(model) {
   if (!model.has_tool(ToolKind::ball) && !model.has_meeting_bodies()) return;
   for (std::size_t organ = 0; organ < model.organs.size(); ++organ) {
     organs_.emplace_back();
-    if (points_.has(organ)) organs_.back().emplace(model, organ);
+    if (points_.has(organ)) organs_.back().emplace(model, organ, watch);
   }
 }
 
@@ -136,6 +136,7 @@ bool CutSurfaces::wait_near(const Box& region, const StateView& state, const sur
 /// Takes organs_ over from the worker, which goes on with their patches.
 void CutSurfaces::wait() {
   if (!follows_.valid()) return;
+  const InStage waiting(watch_, Stage::cut_surface);
   try {
     hidden_ = follows_.get();
   } catch (...) {

@@ -12,6 +12,7 @@
 #include "core/cutting/swept_surface.h"
 #include "core/model/box.h"
 #include "core/model/model.h"
+#include "core/model/stage.h"
 #include "core/model/state.h"
 #include "core/model/state_view.h"
 
@@ -25,8 +26,9 @@ namespace ctpm::contact {
 /// something may touch the cut, so that results do not depend on how fast it is.
 class CutSurfaces {
  public:
-  /// `model` must outlive the CutSurfaces. Nothing is built until something is cut, or a blade is held.
-  explicit CutSurfaces(const Model& model);
+  /// `model` must outlive the CutSurfaces, and so must `watch`, if it is not null. Nothing is built until something is
+  /// cut.
+  explicit CutSurfaces(const Model& model, StageWatch* watch = nullptr);
   CutSurfaces(const CutSurfaces&) = delete;
   CutSurfaces& operator=(const CutSurfaces&) = delete;
 
@@ -91,6 +93,7 @@ class CutSurfaces {
   std::vector<std::uint8_t> find_hidden() const;
 
   const Model& model_;
+  StageWatch* watch_;
   cutbody::CutPoints points_;
   std::vector<std::optional<cutbody::CutPatches>> organs_;  ///< empty where an organ's cuts are not touched
   bool is_cut_ = false;

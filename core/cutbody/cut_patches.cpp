@@ -153,7 +153,8 @@ struct CutPatches::Parts {
   std::atomic<bool> is_wanted = false;  ///< somebody waits for a patch
 };
 
-CutPatches::CutPatches(const Model& model, std::size_t organ) : model_(model), organ_(organ) {}
+CutPatches::CutPatches(const Model& model, std::size_t organ, StageWatch* watch)
+    : model_(model), organ_(organ), watch_(watch) {}
 CutPatches::~CutPatches() = default;
 CutPatches::CutPatches(CutPatches&&) noexcept = default;
 
@@ -274,6 +275,7 @@ CutPatch* CutPatches::patch(Index block, std::int32_t vertex) {
 
 std::vector<std::unique_ptr<CutPatch>>& CutPatches::made(Covered& covered) {
   if (!std::atomic_ref(covered.is_made).load(std::memory_order_acquire)) {
+    const InStage making(watch_, Stage::cut_surface);
     const Wanted wanted(parts_->is_wanted);
     make_once(covered);
   }

@@ -8,6 +8,7 @@
 #include "core/cutbody/cut_grid.h"
 #include "core/model/box.h"
 #include "core/model/model.h"
+#include "core/model/stage.h"
 #include "core/model/state.h"
 #include "core/surface/bodies.h"
 
@@ -48,8 +49,8 @@ class CutPatches {
   /// negative. A vertex moves at most kStretch times as far as the farthest sphere.
   static constexpr double kWiden = 1, kStretch = 1 + 2 * kWiden;
 
-  /// `model` must outlive the CutPatches. The organ must have a surface.
-  CutPatches(const Model& model, std::size_t organ);
+  /// `model` must outlive the CutPatches, and so must `watch`, if it is not null. The organ must have a surface.
+  CutPatches(const Model& model, std::size_t organ, StageWatch* watch = nullptr);
   ~CutPatches();
   CutPatches(CutPatches&&) noexcept;
 
@@ -112,6 +113,7 @@ class CutPatches {
 
   const Model& model_;
   const std::size_t organ_;
+  StageWatch* watch_;
   std::unique_ptr<Parts> parts_;  ///< made by prepare()
   std::vector<Covered> covered_;  ///< by block
   std::vector<Index> piece_;      ///< of each node of the grid

@@ -64,9 +64,10 @@ struct Stepper::Parts {
         kernels(elements::kernels_for(options.instruction_set)),
         team(options.threads),
         elements(m, team, options.instruction_set),
-        contacts(m, kernels),
+        contacts(m, kernels, options.watch),
         resistance(m, elements.slabs(), team, kernels),
-        next(m) {
+        next(m),
+        watch(options.watch) {
     if (m.has_scalpel()) blade.emplace(m);
     contacts.reserve(next.touched);
     reserve(trial);
@@ -83,6 +84,7 @@ struct Stepper::Parts {
 
   contact::HeldTool hold(const Hand& last, const Hand& hand) const;
   bool advance(const State& from, const contact::HeldTools& tools, const Substep& part, StepReport& report);
+  void begin_cuts(const State& last, const Inputs& inputs, contact::HeldTools& tools, State& state);
   bool run_substeps(State& state, const contact::HeldTools& tools, StepReport& report);
   void reserve(State& state) const;
 
@@ -101,6 +103,7 @@ struct Stepper::Parts {
   /// Trial state of a tick that changes State more than once.
   State trial;
   bool has_loads = true;
+  StageWatch* watch;  ///< null: nobody measures
 };
 
 contact::HeldTool Stepper::Parts::hold(const Hand& last, const Hand& hand) const {
@@ -136,6 +139,16 @@ bool Stepper::Parts::advance(const State& from, const contact::HeldTools& tools,
       integrator);
 }
 
+/// Follows what is cut in `state`, with which the tick begins, and the blades from where they were in `last`.
+void Stepper::Parts::begin_cuts(const State& last, const Inputs& inputs, contact::HeldTools& tools, State& state) {
+  const InStage cutting(watch, Stage::cut);
+  contacts.begin_tick(state, contact::held_scalpel(tools) != nullptr);
+  for (std::size_t hand = 0; hand < kMostHands; ++hand)
+    if (tools[hand].is(ToolKind::scalpel))
+      blade->begin_tick(last_of(last, inputs, hand), inputs.hand(hand),
+                        last.last_inputs.hand(hand).tool != inputs.hand(hand).tool, tools[hand], state);
+}
+
 /// All substeps of a tick. False: one was refused, and `state` is as before that one.
 bool Stepper::Parts::run_substeps(State& state, const contact::HeldTools& tools, StepReport& report) {
   const contact::HeldTool* const scalpel = contact::held_scalpel(tools);
@@ -143,10 +156,15 @@ bool Stepper::Parts::run_substeps(State& state, const contact::HeldTools& tools,
   const double h = model.tick / substeps;
   for (std::int32_t k = 1; k <= substeps; ++k) {
     const double share = double(k) / substeps, time = (double(state.tick) + share) * model.tick;
-    if (scalpel != nullptr) blade->begin_substep(state);
+    if (scalpel != nullptr) {
+      const InStage cutting(watch, Stage::cut);
+      blade->begin_substep(state);
+    }
     if (!advance(state, tools, {h, time, share, has_loads}, report)) return false;
     commit(next, state);
-    if (scalpel != nullptr) blade->end_substep(*scalpel, share, state, report);
+    if (scalpel == nullptr) continue;
+    const InStage cutting(watch, Stage::cut);
+    blade->end_substep(*scalpel, share, state, report);
   }
   return true;
 }
@@ -178,11 +196,7 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   const bool changes_once = !cuts && parts.choice.substeps == 1;
   if (!changes_once) parts.trial = state;
   State& current = changes_once ? state : parts.trial;
-  parts.contacts.begin_tick(current, cuts);
-  for (std::size_t hand = 0; hand < kMostHands; ++hand)
-    if (tools[hand].is(ToolKind::scalpel))
-      parts.blade->begin_tick(last_of(state, inputs, hand), inputs.hand(hand),
-                              state.last_inputs.hand(hand).tool != inputs.hand(hand).tool, tools[hand], current);
+  parts.begin_cuts(state, inputs, tools, current);
   if (!parts.run_substeps(current, tools, report)) {
     // Nothing of a refused tick has happened.
     StepReport refused;
@@ -190,7 +204,10 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
     refused.residual = report.residual, refused.iterations = report.iterations;
     return refused;
   }
-  if (cuts) parts.blade->report_pieces(current, report);
+  if (cuts) {
+    const InStage cutting(parts.watch, Stage::cut);
+    parts.blade->report_pieces(current, report);
+  }
   report.inverted = parts.resistance.count_inverted(current);
   if (!changes_once) std::swap(state, parts.trial);
   state.last_inputs = inputs;

@@ -33,12 +33,18 @@ struct CostPoint {
   bool is_own = false;     ///< the scene's own choice
 };
 
+/// A kind of error of an organ that no diagram can show, since the study of it does not converge.
+struct LeftOut {
+  std::string organ, kind, why;
+};
+
 /// The result of a study: a section for the page, rows for programs, conclusions as sentences.
 struct BenchStudy {
   reports::Section section;
   reports::Table points;
   std::vector<std::string> sentences;
-  std::vector<CostPoint> costs = {};  ///< of choices about one organ, for the diagram that compares the studies
+  std::vector<CostPoint> costs = {};   ///< of choices about one organ, for the diagram that compares the studies
+  std::vector<LeftOut> left_out = {};  ///< of that diagram
 };
 
 /// The first of `errors`, coarsest refinement first, that is more than a fifth greater than the one before and more
@@ -62,7 +68,7 @@ Result<std::vector<BenchStudy>> run_bench_space(const BenchOptions& options, con
 Result<std::vector<BenchStudy>> run_bench_organ(const BenchOptions& options, const BenchProgress& progress);
 
 /// The errors of time, space, structure and lattice phase of each organ in one diagram, force in percent against
-/// milliseconds a tick. Empty without CostPoints.
+/// milliseconds a tick, and which of them are left out. Empty without CostPoints.
 std::vector<BenchStudy> compare_costs(const std::vector<BenchStudy>& studies);
 
 /// The four structures on the paper's rig against the closed forms and the paper's Table 1.

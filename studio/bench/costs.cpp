@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "studio/bench/bench.h"
 #include "studio/output/number_text.h"
@@ -35,7 +36,8 @@ reports::Plot diagram(const std::vector<CostPoint>& points) {
 }
 
 /// The errors of the scene's own choices, the largest first: that is where more time buys most.
-std::string sentence_of(const std::string& organ, const std::vector<CostPoint>& points) {
+std::string sentence_of(const std::string& organ, const std::vector<CostPoint>& points,
+                        const std::vector<LeftOut>& left_out) {
   std::vector<CostPoint> own;
   for (const CostPoint& p : points)
     if (p.is_own) own.push_back(p);
@@ -44,8 +46,9 @@ std::string sentence_of(const std::string& organ, const std::vector<CostPoint>& 
   std::string text = organ + ": as the scene is, its force is off by ";
   for (std::size_t i = 0; i < own.size(); ++i)
     text += (i == 0 ? "" : ", ") + percent(own[i].force_error) + " by " + own[i].kind + " (" + own[i].name + ")";
-  return own.empty() ? organ + ": no study converged at the scene's own choice."
-                     : text + "; more time buys most where that is most.";
+  if (own.empty()) text = organ + ": no study converged at the scene's own choice";
+  for (const LeftOut& out : left_out) text += "; by " + out.kind + " it cannot be told: " + out.why;
+  return text + (own.size() > 1 && left_out.empty() ? "; more time buys most where that is most." : ".");
 }
 
 }  // namespace
@@ -61,10 +64,14 @@ std::vector<BenchStudy> compare_costs(const std::vector<BenchStudy>& studies) {
     std::vector<CostPoint> points;
     std::copy_if(all.begin(), all.end(), std::back_inserter(points),
                  [&](const CostPoint& p) { return p.organ == organ; });
+    std::vector<LeftOut> left_out;
+    for (const BenchStudy& study : studies)
+      std::copy_if(study.left_out.begin(), study.left_out.end(), std::back_inserter(left_out),
+                   [&](const LeftOut& out) { return out.organ == organ; });
     BenchStudy study;
     study.points = bench_layout();
     study.section.key = "costs", study.section.title = "Where a millisecond buys most: " + organ;
-    study.sentences = {sentence_of(organ, points)};
+    study.sentences = {sentence_of(organ, points, left_out)};
     study.section.paragraphs = {
         "Each line changes one choice and leaves the others as the scene has them: the integrator and its substeps "
         "(against fine steps), the radius (against fine spheres), the structure (against the CTPM on the same "

@@ -35,9 +35,9 @@ std::string why_not_converged(const std::vector<Compared>& fillings) {
   return "";
 }
 
-std::string recommendation(const std::string& name, const std::vector<Compared>& fillings, double tick) {
-  if (const std::string why = why_not_converged(fillings); !why.empty())
-    return name + ": the radius does not converge: " + why + ". No radius is recommended.";
+std::string recommendation(const std::string& name, const std::vector<Compared>& fillings, double tick,
+                           const std::string& why) {
+  if (!why.empty()) return name + ": the radius does not converge: " + why + ". No radius is recommended.";
   const Compared* best = nullptr;
   for (const Compared& f : fillings)
     if (f.feels && percentile(f.organ.run.seconds, 0.99) <= tick) best = &f;
@@ -127,7 +127,8 @@ Result<BenchStudy> study_of(const loading::LoadedScene& own, bool is_quick, cons
     cost.push_back(percentile(f.organ.run.seconds, 0.5)), errors.push_back(f.feels ? f.position_error : INFINITY);
     fillings.push_back(std::move(f));
   }
-  if (why_not_converged(fillings).empty())
+  const std::string why = why_not_converged(fillings);
+  if (why.empty())
     for (const std::size_t i : pareto_front(cost, errors)) fillings[i].is_on_front = true;
   const double tick = own.built.model.tick;
   BenchStudy study;
@@ -136,12 +137,14 @@ Result<BenchStudy> study_of(const loading::LoadedScene& own, bool is_quick, cons
   for (const Compared& f : fillings) {
     study.points.rows.push_back(row_of("space", name, "ctpm", f.organ, tick, f.position_error, f.force_error));
     if (f.is_on_front) study.points.rows.back().back() = std::string("front");
-    study.costs.push_back({name, "space", "r = " + output::short_number(1e3 * f.organ.radius, 3) + " mm",
-                           1e3 * percentile(f.organ.run.seconds, 0.5), f.force_error, &f - fillings.data() == 2});
+    if (why.empty() && f.feels)
+      study.costs.push_back({name, "space", "r = " + output::short_number(1e3 * f.organ.radius, 3) + " mm",
+                             1e3 * percentile(f.organ.run.seconds, 0.5), f.force_error, &f - fillings.data() == 2});
   }
+  if (!why.empty()) study.left_out.push_back({name, "space", why});
   study.section.plots = {plot_of(fillings, false), plot_of(fillings, true)};
   study.section.tables = {table_of(fillings, *reference)};
-  study.sentences = {recommendation(name, fillings, tick)};
+  study.sentences = {recommendation(name, fillings, tick, why)};
   study.section.paragraphs = {
       "A ball comes down 6 mm on the highest point of the surface at 60 mm/s and stays, whatever the filling; contacts "
       "are as stiff as those of the scene's own filling. Errors are relative differences in L2 over time of the drawn "

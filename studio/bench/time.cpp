@@ -477,6 +477,7 @@ BenchStudy study(const TimeJob& job, const BenchOptions& options, const std::fun
         " between 2 and 4 substeps: where that is 2 and the table has less, contacts that begin and end within steps "
         "cost the difference, since the force has a kink there.");
   if (!job.organ.empty() && why.empty()) add_costs(job, points, study);
+  if (!job.organ.empty() && !why.empty()) study.left_out.push_back({job.organ, "time", why});
   study.points = bench_layout();
   for (const Point& p : points) study.points.rows.push_back(row_of(job, p));
   return study;

@@ -9,6 +9,7 @@
 #include "studio/output/number_text.h"
 #include "studio/output/printable.h"
 #include "studio/session/anonymise.h"
+#include "studio/session/late_ticks.h"
 #include "studio/session/session_info.h"
 
 namespace ctpm::commands {
@@ -77,6 +78,9 @@ void print_text(recordings::SessionReader& reader, const recordings::SessionStat
   print("network    %zu spheres, %zu elements\n", model.sphere_count(), model.element_count());
   print("tick time  p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms; %lld late\n", s.tick_time_p50 * 1e3,
         s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)s.late_ticks);
+  if (s.late_ticks > 0)
+    print("late       because of: %s (%s)\n", session::late_ticks_of(events, model.tick).text().c_str(),
+          session::kLateCausesSay);
   if (s.input_age_max > 0)
     print("input age  p50 %.3f ms, p99 %.3f ms, max %.3f ms\n", s.input_age_p50 * 1e3, s.input_age_p99 * 1e3,
           s.input_age_max * 1e3);

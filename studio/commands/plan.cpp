@@ -165,9 +165,6 @@ Errors find_misses(const scenes::Script& script, const session::SessionCost& cos
   return misses;
 }
 
-/// Least share of the processor with which the slowest ticks of a session are told from those of other programs.
-constexpr double kQuiet = 0.9;
-
 /// What is told of a scene.
 struct Plan {
   const loading::LoadedScene& scene;
@@ -179,8 +176,8 @@ struct Plan {
   std::optional<session::FittingRadius> fitting;
 
   double tick() const { return scene.built.model.tick; }
-  /// Whether other programs left the processor to the session, so that its slowest ticks are its own.
-  bool is_quiet() const { return cost && cost->processor_share >= kQuiet; }
+  /// Whether what was measured says more than that the rate is held.
+  bool is_told() const { return cost && cost->is_own(); }
   bool holds() const { return cost && !stepping::is_refused(cost->outcome.run.status) && cost->dearest() <= tick(); }
 };
 
@@ -214,7 +211,7 @@ Result<Done> measure(const PlanArguments& arguments, Plan& plan) {
     if (!cost) return cost.errors();
     plan.cost = *std::move(cost);
   }
-  if (plan.holds() || !plan.is_quiet()) return Done{};
+  if (plan.holds() || !plan.is_told()) return Done{};
   ProgressLine line("coarser spheres");
   told(line);
   Result<std::optional<session::FittingRadius>> fitting =
@@ -232,6 +229,7 @@ void write_times(output::JsonWriter& json, const session::SessionCost& cost) {
         .member("ticks", cost.of(deed).ticks)
         .member("p50_s", cost.of(deed).p50)
         .member("p99_s", cost.of(deed).p99)
+        .member("own_p99_s", cost.of(deed).own_p99)
         .end_object();
   json.end_list();
 }
@@ -250,7 +248,8 @@ void print_json(const std::string& path, const Plan& plan, const std::string& so
   json.member("tick_time_at_rest_s", plan.rest);
   if (plan.cost) {
     json.member("threads", plan.cost->threads).member("processor_share", plan.cost->processor_share);
-    if (plan.holds() || plan.is_quiet()) json.member("holds_rate", plan.holds());
+    json.member("lost_share", plan.cost->lost_share);
+    if (plan.holds() || plan.is_told()) json.member("holds_rate", plan.holds());
     json.key("tick_times");
     write_times(json, *plan.cost);
   }
@@ -292,8 +291,17 @@ std::string p99_text(const session::SessionCost& cost) {
   for (const session::Deed deed : session::kDeeds)
     if (const session::DeedTimes times = cost.of(deed); times.ticks > 0)
       text += (text.empty() ? "" : ", ") + std::string(session::name_of(deed)) + " " +
-              output::fixed(1e3 * times.p99, 3) + " ms";
+              output::fixed(1e3 * times.own_p99, 3) + " ms";
   return text;
+}
+
+/// Share of the time of ticks that other programs may take before it is spoken of.
+constexpr double kFewLost = 0.02;
+
+/// ", of its own 0.654 ms" where other programs made a p99 longer than it is.
+std::string own_text(const session::DeedTimes& times) {
+  return times.own_p99 < (1 - kFewLost) * times.p99 ? ", of its own " + output::fixed(1e3 * times.own_p99, 3) + " ms"
+                                                    : std::string();
 }
 
 void print_times(const Plan& plan) {
@@ -307,14 +315,16 @@ void print_times(const Plan& plan) {
         importers::counted(plan.cost->threads, "thread").c_str());
   for (const session::Deed deed : session::kDeeds)
     if (const session::DeedTimes times = plan.cost->of(deed); times.ticks > 0)
-      print("  %-18s p50 %.3f ms, p99 %.3f ms, %lld ticks\n", session::name_of(deed), 1e3 * times.p50, 1e3 * times.p99,
-            (long long)times.ticks);
-  if (!plan.holds() && !plan.is_quiet())
+      print("  %-18s p50 %.3f ms, p99 %.3f ms%s, %lld ticks\n", session::name_of(deed), 1e3 * times.p50,
+            1e3 * times.p99, own_text(times).c_str(), (long long)times.ticks);
+  if (!plan.holds() && !plan.is_told())
     return print(
-        "whether it holds %s at p99 cannot be told: other programs held the processor for %.0f %% of the time\n",
-        rate.c_str(), 100 * (1 - plan.cost->processor_share));
-  if (plan.holds()) return print("holds %s at p99\n", rate.c_str());
-  print("does not hold %s at p99\n", rate.c_str());
+        "whether it holds %s at p99 cannot be told: other programs held processors that its %d threads share\n",
+        rate.c_str(), plan.cost->threads);
+  const bool is_alone = plan.cost->lost_share < kFewLost;
+  print("%s %s at p99%s\n", plan.holds() ? "holds" : "does not hold", rate.c_str(),
+        is_alone ? "" : ", if other programs leave it a processor");
+  if (plan.holds()) return;
   if (plan.fitting)
     print("holds it with radius_mm and gap_mm times %g (%s; %zu spheres): p99 %s\n", plan.fitting->factor,
           radii_text(plan).c_str(), plan.fitting->spheres, p99_text(plan.fitting->cost).c_str());

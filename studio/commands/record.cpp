@@ -108,6 +108,8 @@ int print_outcome(const std::string& path, const Model& model, const session::Re
         (long long)s.ticks, extremes_text(s.max_force, s.max_depth).c_str(), (long long)s.severed);
   print("tick time p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms, %lld late\n", s.tick_time_p50 * 1e3,
         s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)outcome.run.late_ticks);
+  if (outcome.run.late_ticks > 0)
+    print("late because of: %s (%s)\n", outcome.run.late_by.text().c_str(), session::kLateCausesSay);
   if (outcome.run.fallbacks > 0)
     print("%lld ticks were too long for sdirk2: backward Euler took them\n", (long long)outcome.run.fallbacks);
   for (const session::Deed deed : {session::Deed::contact, session::Deed::cut})

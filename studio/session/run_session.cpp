@@ -10,6 +10,7 @@
 #include "core/stepping/step.h"
 #include "recordings/state_hash.h"
 #include "studio/session/event_watch.h"
+#include "studio/session/part_clock.h"
 
 namespace ctpm::session {
 namespace {
@@ -25,6 +26,7 @@ class TickClock {
       : length_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(tick))) {}
 
   void wait_for_tick() const { std::this_thread::sleep_until(deadline_); }
+  Clock::time_point deadline() const { return deadline_; }
 
   /// Real time less session time at the start of a tick, in whole milliseconds [s].
   double slip(Clock::time_point start, std::int64_t tick) const {
@@ -89,8 +91,9 @@ int threads_for(const Model& model) {
 
 RunOutcome run_session(const Model& model, State& state, sources::InputSource& source,
                        recordings::SessionWriter& writer, const RunOptions& options) {
-  stepping::Stepper stepper(model, {.threads = options.threads});
-  if (options.in_real_time) stepper.prepare();
+  PartClock parts;
+  stepping::Stepper stepper(model, {.threads = options.threads, .watch = &parts});
+  stepper.prepare();
   EventWatch watch(model, options.damage_force, [&](recordings::Event event) { writer.event(std::move(event)); });
   FailureWatch failure(writer, options.tell);
   RunOutcome outcome;
@@ -98,14 +101,17 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
   TickClock clock(model.tick);
   for (std::int64_t tick = 0; options.most_ticks == 0 || tick < options.most_ticks; ++tick) {
     if (options.should_stop && options.should_stop()) break;
+    const Clock::time_point waited = Clock::now();
     if (options.in_real_time) clock.wait_for_tick();
+    parts.begin_tick(options.in_real_time ? clock.deadline() : waited, waited);
     const std::optional<Inputs> inputs = source.next(tick, report);
     take_events(source, tick, writer);
     if (!inputs) break;
-    const Clock::time_point start = Clock::now();
-    if (options.in_real_time) outcome.slip = clock.slip(start, tick);
+    parts.begin_step();
+    if (options.in_real_time) outcome.slip = clock.slip(parts.last(), tick);
     report = stepper.step(state, *inputs);
-    const double tick_time = seconds_since(start);
+    parts.begin_recording();
+    outcome.lost = parts.lost_in_step();
     outcome.status = report.status, outcome.worst_sphere = report.worst_sphere;
     if (stepping::is_refused(report.status)) {
       writer.event({.tick = tick,
@@ -115,12 +121,13 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
       break;
     }
     const recordings::TickRecord record = recordings::make_record(
-        *inputs, report, tick_time, recordings::state_hash(state), source.input_age(), outcome.slip);
+        *inputs, report, parts.step_time(), recordings::state_hash(state), source.input_age(), outcome.slip);
     writer.append(state, record);
     watch.look(tick, *inputs, report);
     if (const double late = options.in_real_time ? clock.end_tick() : 0; late > 0) {
-      ++outcome.late_ticks;
-      writer.event({.tick = tick, .kind = recordings::EventKind::late_tick, .late = late});
+      const recordings::TickParts of = parts.end_tick();
+      ++outcome.late_ticks, outcome.late_by.add(recordings::late_cause(of, model.tick));
+      writer.event({.tick = tick, .kind = recordings::EventKind::late_tick, .late = late, .parts = of});
     }
     ++outcome.ticks, outcome.fallbacks += report.fallbacks > 0;
     outcome.fault = failure.look();

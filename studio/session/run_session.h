@@ -8,6 +8,8 @@
 #include "core/model/model.h"
 #include "core/model/state.h"
 #include "recordings/session_writer.h"
+#include "recordings/tick_parts.h"
+#include "studio/session/late_ticks.h"
 #include "studio/sources/input_source.h"
 
 namespace ctpm::session {
@@ -16,9 +18,11 @@ namespace ctpm::session {
 struct RunOutcome {
   std::int64_t ticks = 0;
   std::int64_t late_ticks = 0;                             ///< ticks that ended after their deadline, in real time only
+  LateTicks late_by;                                       ///< the same by what made them late
   std::int64_t fallbacks = 0;                              ///< ticks in which backward Euler took a step for sdirk2
   stepping::StepStatus status = stepping::StepStatus::ok;  ///< of the last tick; a diverged tick ends the run
   std::int32_t worst_sphere = -1;
+  double lost = 0;    ///< time that the machine took of the last step [s]; see PartClock
   double slip = 0;    ///< real time less session time at the start of the last tick [s]; 0 if not in real time
   std::string fault;  ///< why the source ended the session early; empty if it did not
 };

@@ -29,8 +29,13 @@ bool has_mesh(const scenes::OrganSpec& organ) { return !organ.mesh.empty(); }
 }  // namespace
 
 double SessionCost::dearest() const {
-  const double worked = std::max(of(Deed::contact).p99, of(Deed::cut).p99);
-  return worked > 0 ? worked : of(Deed::none).p99;
+  const double worked = std::max(of(Deed::contact).own_p99, of(Deed::cut).own_p99);
+  return worked > 0 ? worked : of(Deed::none).own_p99;
+}
+
+bool SessionCost::is_own() const {
+  constexpr double kLeast = 0.75;  // of the processor time that all threads would have
+  return threads == 1 || processor_share >= kLeast * threads;
 }
 
 Result<SessionCost> measure_session(const loading::LoadedScene& scene, const ScriptOf& script, RunOptions running) {
@@ -40,14 +45,21 @@ Result<SessionCost> measure_session(const loading::LoadedScene& scene, const Scr
   TickTimes times(scene.built.model);
   running.in_real_time = false;
   running.threads = threads_for(scene.built.model);
-  running.watch = [&](const State&, const recordings::TickRecord& record, const RunOutcome&) { times.add(record); };
+  double lost = 0, all = 0;
+  running.watch = [&](const State&, const recordings::TickRecord& record, const RunOutcome& so_far) {
+    times.add(record, so_far.lost), lost += so_far.lost, all += record.tick_time;
+  };
   const std::clock_t work = std::clock();
   const auto start = std::chrono::steady_clock::now();
   const Result<RecordOutcome> outcome = record_script(scene, *steps, unkept.file(), false, running);
   if (!outcome) return outcome.errors();
   if (running.should_stop && running.should_stop()) return Error{scene.path, "stopped", ""};
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  SessionCost cost{*outcome, {}, running.threads, double(std::clock() - work) / CLOCKS_PER_SEC / taken.count()};
+  SessionCost cost{*outcome,
+                   {},
+                   running.threads,
+                   double(std::clock() - work) / CLOCKS_PER_SEC / taken.count(),
+                   all > 0 ? lost / all : 0};
   for (const Deed deed : kDeeds) cost.times[std::size_t(deed)] = times.of(deed);
   return cost;
 }

@@ -18,11 +18,15 @@ struct SessionCost {
   RecordOutcome outcome;
   std::array<DeedTimes, kDeeds.size()> times;
   int threads = 1;
-  double processor_share = 1;  ///< processor time over time: less than 1 where other programs held the processor
+  double processor_share = 1;  ///< processor time of all threads over time
+  double lost_share = 0;       ///< of the ticks' time: in which their first thread had no processor
 
   DeedTimes of(Deed deed) const { return times[std::size_t(deed)]; }
-  /// The greatest p99 of a tick in contact or in a cut; without either, of all ticks [s].
+  /// The greatest p99 of a tick in contact or in a cut, less what the machine took; without either, of all ticks [s].
   double dearest() const;
+  /// Whether dearest() is the session's own time, whatever else ran. Where threads share a tick, the others must have
+  /// had a processor, too; else it is too high.
+  bool is_own() const;
 };
 
 /// The script of a scene, whose places may depend on its filling.

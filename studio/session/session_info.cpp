@@ -5,6 +5,7 @@
 
 #include "studio/output/json_writer.h"
 #include "studio/session/anonymise.h"
+#include "studio/session/late_ticks.h"
 
 namespace ctpm::session {
 namespace {
@@ -68,9 +69,11 @@ std::string info_json(const recordings::SessionReader& reader, const SessionInfo
     json.null();  // nobody looked
   else
     json.value(recordings::cells_inside_out(events, reader.tick_count()) > 0);
-  json.member("late_ticks", s.late_ticks)
-      .member("tick_time_p50_s", s.tick_time_p50)
-      .member("tick_time_p99_s", s.tick_time_p99);
+  json.member("late_ticks", s.late_ticks).key("late_because_of").begin_object();
+  const LateTicks late = late_ticks_of(events, model.tick);
+  for (const recordings::LateCause cause : recordings::kLateCauses)
+    json.member(recordings::name_of(cause), late.of(cause));
+  json.end_object().member("tick_time_p50_s", s.tick_time_p50).member("tick_time_p99_s", s.tick_time_p99);
   json.member("tick_time_p999_s", s.tick_time_p999).member("tick_time_max_s", s.tick_time_max);
   json.member("input_age_p50_s", s.input_age_p50)
       .member("input_age_p99_s", s.input_age_p99)

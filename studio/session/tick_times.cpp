@@ -29,14 +29,15 @@ Deed TickTimes::deed_of(const recordings::TickRecord& record) const {
   return deed;
 }
 
-void TickTimes::add(const recordings::TickRecord& record) {
-  times_[std::size_t(deed_of(record))].push_back(float(record.tick_time));
+void TickTimes::add(const recordings::TickRecord& record, double lost) {
+  const auto deed = std::size_t(deed_of(record));
+  times_[deed].push_back(float(record.tick_time)), own_[deed].push_back(float(record.tick_time - lost));
 }
 
 DeedTimes TickTimes::of(Deed deed) const {
-  std::vector<float> times = times_[std::size_t(deed)];
+  std::vector<float> times = times_[std::size_t(deed)], own = own_[std::size_t(deed)];
   if (times.empty()) return {};
-  return {std::int64_t(times.size()), nearest_rank(times, 50), nearest_rank(times, 99)};
+  return {std::int64_t(times.size()), nearest_rank(times, 50), nearest_rank(times, 99), nearest_rank(own, 99)};
 }
 
 }  // namespace ctpm::session

@@ -21,6 +21,7 @@ const char* name_of(Deed deed);
 struct DeedTimes {
   std::int64_t ticks = 0;
   double p50 = 0, p99 = 0;  ///< [s]
+  double own_p99 = 0;       ///< the same, less what the machine took of each tick: other programs slow it little [s]
 };
 
 /// Sorts the computing times of a session's ticks by deed.
@@ -29,14 +30,15 @@ class TickTimes {
   /// `model` must outlive it.
   explicit TickTimes(const Model& model) : model_(model) {}
 
-  void add(const recordings::TickRecord& record);
+  /// `lost`: what the machine took of the tick, RunOutcome::lost [s].
+  void add(const recordings::TickRecord& record, double lost = 0);
   DeedTimes of(Deed deed) const;
 
  private:
   Deed deed_of(const recordings::TickRecord& record) const;
 
   const Model& model_;
-  std::array<std::vector<float>, kDeeds.size()> times_;
+  std::array<std::vector<float>, kDeeds.size()> times_, own_;
 };
 
 }  // namespace ctpm::session

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/contact/cut_surfaces.h"
@@ -313,6 +315,40 @@ TEST_P(CutContactUnder, HowFastACutIsFollowedChangesNoBit) {
         if (tick >= 150 && tick % 15 == 0) fresh.emplace(model);
       });
   expect_same(at_once, late);
+}
+
+/// Notes the stages of a tick.
+class Stages : public StageWatch {
+ public:
+  Stage enter(Stage stage) override {
+    seen.push_back(stage);
+    return std::exchange(now, stage);
+  }
+  bool take(Stage stage) const { return std::find(seen.begin(), seen.end(), stage) != seen.end(); }
+
+  Stage now = Stage::solve;
+  std::vector<Stage> seen;
+};
+
+TEST_P(CutContactUnder, ATickTellsWhenItCutsAndWhenItWaitsForACut) {
+  Model model = block_on_ground(GetParam());
+  model.obstacles.clear(), model.gravity = {};
+  Stages stages;
+  stepping::Stepper watched(model, {.watch = &stages}), alone(model);
+  State state = rest_state(model), other = state;
+  bool cuts = false, waits = false;
+  for (int tick = 0; tick < 420; ++tick) {
+    stages.seen.clear();
+    const stepping::StepReport report = watched.step(state, cut_and_press(tick));
+    EXPECT_EQ(stages.now, Stage::solve) << tick;
+    EXPECT_TRUE(report.severed == 0 || stages.take(Stage::cut)) << tick;
+    cuts = cuts || report.severed > 0;
+    EXPECT_TRUE(tick >= 150 || !stages.take(Stage::cut_surface)) << "no ball is there yet, in tick " << tick;
+    waits = waits || stages.take(Stage::cut_surface);
+    (void)alone.step(other, cut_and_press(tick));
+  }
+  EXPECT_TRUE(cuts && waits);
+  expect_same(state, other);
 }
 
 TEST(CutContact, ACutIsFollowedBeforeTheBladeIsPutAway) {

@@ -61,6 +61,16 @@ TEST(Bench, OneDiagramComparesWhatEachChoiceOfAnOrganCosts) {
   EXPECT_TRUE(bench::compare_costs({}).empty());
 }
 
+TEST(Bench, WhatDoesNotConvergeIsNamedInPlaceOfAnError) {
+  std::vector<bench::BenchStudy> studies(2);
+  studies[0].costs = {{"liver", "time, sdirk2", "1 substep", 0.4, 0.01, true}};
+  studies[1].left_out = {{"liver", "space", "the error in force grows"}, {"kidney", "space", "of another organ"}};
+  const std::string sentence = bench::compare_costs(studies).at(0).sentences.at(0);
+  EXPECT_EQ(sentence,
+            "liver: as the scene is, its force is off by 1 % by time, sdirk2 (1 substep); by space it cannot be told: "
+            "the error in force grows.");
+}
+
 TEST(Bench, PercentilesAreValuesThatWereMeasured) {
   std::vector<double> values;
   for (int i = 1000; i >= 1; --i) values.push_back(i);

@@ -73,6 +73,27 @@ TEST_F(Clock, WhatALateTickLosesBeyondATenthOfASecondIsKeptPerMomentAndPerSessio
   EXPECT_TRUE(reader->check_all()) << "and they are counted anew when it is verified";
 }
 
+TEST_F(Clock, ALateTickSaysThatItsInputCameLate) {
+  const session::RunOutcome outcome = record("a.ctpm", "igtl");
+  auto reader = recordings::SessionReader::open(folder_ / "a.ctpm");
+  ASSERT_TRUE(reader);
+  const auto events = reader->events();
+  ASSERT_TRUE(events);
+  const auto late = std::ranges::find_if(*events, [](const recordings::Event& event) {
+    return event.kind == recordings::EventKind::late_tick && event.tick == kLateTick;
+  });
+  ASSERT_NE(late, events->end());
+  EXPECT_GE(late->parts.input, 0.299);
+  const double tick = reader->start().model.tick;
+  EXPECT_EQ(recordings::late_cause(late->parts, tick), recordings::LateCause::input);
+  EXPECT_GT(late->parts.solver, 0);
+  // What is late is what the tick itself took too long, and the delay before it.
+  EXPECT_LE(late->parts.sum() - tick, late->late + 1e-3);
+  EXPECT_EQ(session::late_ticks_of(*events, tick), outcome.late_by);
+  EXPECT_EQ(outcome.late_by.total(), outcome.late_ticks);
+  EXPECT_NE(outcome.late_by.text().find("input "), std::string::npos) << outcome.late_by.text();
+}
+
 TEST_F(Clock, AComparisonGivesNoMeasureOfTimeWhereAHandLostIt) {
   record("hand.ctpm", "igtl"), record("script.ctpm", "script");
   const compare::SessionTrack hand = track_of(folder_ / "hand.ctpm"), script = track_of(folder_ / "script.ctpm");
