@@ -27,7 +27,7 @@ namespace ctpm::contact {
 class CutSurfaces {
  public:
   /// `model` must outlive the CutSurfaces, and so must `watch`, if it is not null. Nothing is built until something is
-  /// cut.
+  /// cut, or prepare() is called.
   explicit CutSurfaces(const Model& model, StageWatch* watch = nullptr);
   CutSurfaces(const CutSurfaces&) = delete;
   CutSurfaces& operator=(const CutSurfaces&) = delete;

@@ -131,7 +131,6 @@ void CutGrid::place_spheres(const Model& model, const OrganRange& organ) {
     home_.push_back(find_home(s));
   }
   node_of_sphere_ = home_;
-  index_spheres();
 }
 
 /// The node in tissue that is the fewest edges from a sphere, none of which the swept surface crosses; of such nodes
@@ -198,19 +197,6 @@ void CutGrid::leave_out(const std::vector<Index>& spheres) {
     for (const Index i : {nodes[s], node_of_sphere_[s]})
       if (nodes[s] != node_of_sphere_[s] && i >= 0) box_.add(node(i));
   node_of_sphere_ = std::move(nodes), changed_ = true;
-  index_spheres();
-}
-
-void CutGrid::index_spheres() {
-  const auto nodes = std::size_t(count());
-  first_sphere_.assign(nodes + 1, 0);
-  for (const Index home : node_of_sphere_)
-    if (home >= 0) ++first_sphere_[std::size_t(home) + 1];
-  for (std::size_t i = 0; i < nodes; ++i) first_sphere_[i + 1] += first_sphere_[i];
-  sphere_.resize(std::size_t(first_sphere_[nodes]));
-  std::vector<Index> next(first_sphere_.begin(), first_sphere_.end() - 1);
-  for (Index s = 0; s < Index(node_of_sphere_.size()); ++s)
-    if (const Index n = node_of_sphere_[std::size_t(s)]; n >= 0) sphere_[std::size_t(next[std::size_t(n)]++)] = s;
 }
 
 /// Severs what a row of the swept surface crosses.

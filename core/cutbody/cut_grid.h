@@ -120,18 +120,13 @@ class CutGrid {
   /// Numbers the pieces of tissue: for each node the lowest node of its piece; -1 outside.
   std::vector<Index> find_pieces() const;
 
-  /// Spheres whose node is this one.
-  std::span<const Index> spheres_at(Index node) const {
-    const auto begin = std::size_t(first_sphere_[std::size_t(node)]),
-               end = std::size_t(first_sphere_[std::size_t(node) + 1]);
-    return {sphere_.data() + begin, end - begin};
-  }
-
-  /// Spheres of a run of nodes.
-  std::span<const Index> spheres_in_row(Index first, Index last) const {
-    const auto begin = std::size_t(first_sphere_[std::size_t(first)]),
-               end = std::size_t(first_sphere_[std::size_t(last) + 1]);
-    return {sphere_.data() + begin, end - begin};
+  /// Calls `visit(sphere)` for the spheres of the organ less than `reach` [m] from a place at rest [m], in any order.
+  template <class Visit>
+  void for_each_sphere_within(Vec3 rest, double reach, Visit&& visit) const {
+    map_.for_each_within(std::size_t(organ_), rest, reach, [&](Index sphere) {
+      if (norm(model_.rest_position[std::size_t(sphere)] - rest) < reach)
+        visit(sphere - model_.organs[std::size_t(organ_)].first);
+    });
   }
 
   /// Box of the nodes whose edges' crossings changed since the last call of this; empty if low > high.
@@ -164,7 +159,6 @@ class CutGrid {
     float low, high;  ///< crossings nearest to the lower and to the upper node
     Vec3 normal_low, normal_high;
   };
-  void index_spheres();
   Index find_home(Index sphere) const;
   void find_homes_outside();
   void sever_row(const State& state, std::size_t row);
@@ -199,7 +193,7 @@ class CutGrid {
   TornTissue torn_tissue_;
   std::unordered_set<std::size_t> torn_;  ///< edges across which tissue is torn, which have crossings in their middle
   std::vector<Index> own_node_;           ///< the node where a sphere is
-  std::vector<Index> home_, node_of_sphere_, first_sphere_, sphere_;
+  std::vector<Index> home_, node_of_sphere_;
   std::size_t rows_ = 0;                                             ///< of the swept surface that have been looked at
   cutting::Front last_{};                                            ///< the last of them, which may still move [m]
   cutting::Front before_{};                                          ///< the one before it [m]

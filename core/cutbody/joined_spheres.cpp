@@ -83,7 +83,7 @@ double JoinedSpheres::part_of(Index sphere) {
 
 std::span<const JoinedSpheres::Joined> JoinedSpheres::within(Vec3 centre, double reach) {
   joined_.clear();
-  bins_.for_each_within(centre, reach, [&](Index sphere) {
+  grid_.for_each_sphere_within(centre, reach, [&](Index sphere) {
     if (const double part = part_of(sphere); part > 0) joined_.push_back({sphere, part});
   });
   std::sort(joined_.begin(), joined_.end(), [](const Joined& a, const Joined& b) { return a.sphere < b.sphere; });

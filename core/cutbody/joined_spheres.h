@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/cutbody/cut_grid.h"
-#include "core/cutbody/rest_bins.h"
 #include "core/cutbody/sight.h"
 
 namespace ctpm::cutbody {
@@ -27,9 +26,8 @@ class JoinedSpheres {
   /// depend on edges so far away.
   static constexpr Index kBlurHops = 2, kMostHops = Sight::kMostHops + kBlurHops;
 
-  /// Both must outlive the JoinedSpheres.
-  JoinedSpheres(const Model& model, const CutGrid& grid)
-      : grid_(grid), sight_(grid), bins_(model, model.organs[std::size_t(grid.organ())]) {}
+  /// `grid` must outlive the JoinedSpheres.
+  explicit JoinedSpheres(const CutGrid& grid) : grid_(grid), sight_(grid) {}
 
   /// Follows the grid, of which edges or spheres in a box have changed.
   void update(CutGrid::NodeBox changed) { sight_.update(changed); }
@@ -42,8 +40,7 @@ class JoinedSpheres {
   void go_to(Vec3 rest, Index side);
   /// How far the place is joined to a sphere; 0: not at all.
   double part_of(Index sphere);
-  /// The spheres that are joined and less than `reach` [m] from `centre` at rest, and perhaps some at the reach;
-  /// ascending. Valid until the next call.
+  /// The spheres that are joined and less than `reach` [m] from `centre` at rest, ascending. Valid until the next call.
   std::span<const Joined> within(Vec3 centre, double reach);
 
   /// Number of calls of update().
@@ -64,7 +61,6 @@ class JoinedSpheres {
 
   const CutGrid& grid_;
   Sight sight_;
-  RestBins bins_;
   std::vector<Weighted> nodes_;
   std::vector<CutGrid::Node> place_;  ///< of each of them in the grid
   double total_ = 0;                  ///< of their weights

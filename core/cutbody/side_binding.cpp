@@ -135,7 +135,7 @@ SideBinding::SideBinding(const Model& model, const CutGrid& grid)
       organ_(model.organs[std::size_t(grid.organ())]),
       whole_(model.surfaces[std::size_t(grid.organ())]),
       grid_(grid),
-      joined_(model, grid),
+      joined_(grid),
       nearest_(grid) {}
 
 /// Vertices of one side differ in their places.
@@ -177,14 +177,14 @@ SideBinding::Binding SideBinding::follow(Vec3 rest, std::span<const Joined> sphe
   return binding;
 }
 
-/// Spheres of a piece within reach; -1: of all pieces.
+/// Spheres of a piece within reach, ascending; -1: of all pieces.
 std::vector<SideBinding::Joined> SideBinding::spheres_around(Vec3 rest, double reach, Index piece) const {
   std::vector<Joined> spheres;
-  for (Index s = 0; s < organ_.count; ++s) {
+  grid_.for_each_sphere_within(rest, reach, [&](Index s) {
     const Index node = grid_.node_of_sphere(s);
-    if (piece >= 0 && (node < 0 || piece_[std::size_t(node)] != piece)) continue;
-    if (norm(model_.rest_position[std::size_t(organ_.first + s)] - rest) < reach) spheres.push_back({s, 1});
-  }
+    if (piece < 0 || (node >= 0 && piece_[std::size_t(node)] == piece)) spheres.push_back({s, 1});
+  });
+  std::sort(spheres.begin(), spheres.end(), [](const Joined& a, const Joined& b) { return a.sphere < b.sphere; });
   return spheres;
 }
 

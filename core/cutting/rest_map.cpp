@@ -115,31 +115,36 @@ Vec3 RestMap::Lattice::in_cells(Vec3 rest) const {
   return {dot(d, axis[0]), dot(d, axis[1]), dot(d, axis[2])};
 }
 
+/// The lowest and the highest cell at most so many cells away along each axis; there is none if low > high.
+std::pair<LatticeCell, LatticeCell> RestMap::Lattice::cells_within(Vec3 rest, double cells) const {
+  const Vec3 c = in_cells(rest);
+  LatticeCell from{}, to{-1, -1, -1};
+  if (sphere_at.empty() || !std::isfinite(c.x + c.y + c.z)) return {from, to};
+  const auto along = [&](std::size_t a, double x) {
+    const double first = low[a], last = first + extent[a] - 1;
+    from[a] = std::int32_t(std::clamp(std::ceil(x - cells), first, last + 1));
+    to[a] = std::int32_t(std::clamp(std::floor(x + cells), first - 1, last));
+  };
+  along(0, c.x), along(1, c.y), along(2, c.z);
+  return {from, to};
+}
+
 void RestMap::find(std::size_t organ, Vec3 rest, double reach, Place& place) const {
   place.count = 0;
   const Lattice& lattice = lattices_[organ];
-  if (lattice.sphere_at.empty()) return;
-  const Vec3 c = lattice.in_cells(rest);
-  const double farthest = 1e6;
-  if (!(std::abs(c.x) < farthest && std::abs(c.y) < farthest && std::abs(c.z) < farthest)) return;
   const double cells = std::min(reach / lattice.spacing, kFarthest);
-  const auto from = [&](double x) { return std::int32_t(std::ceil(x - cells)); };
-  const auto to = [&](double x) { return std::int32_t(std::floor(x + cells)); };
   reach = cells * lattice.spacing;
   std::array<double, Place::kMost> kernels;
   std::array<Vec3, Place::kMost> apart;
   std::size_t count = 0;
   double total = 0;
-  for (std::int32_t k = from(c.z); k <= to(c.z); ++k)
-    for (std::int32_t j = from(c.y); j <= to(c.y); ++j)
-      for (std::int32_t i = from(c.x); i <= to(c.x); ++i) {
-        const std::int32_t sphere = lattice.at(i, j, k);
-        if (sphere < 0 || count == Place::kMost) continue;
-        const Vec3 d = (model_.rest_position[std::size_t(sphere)] - rest) / reach;
-        const double value = kernel(dot(d, d)) * model_.mass[std::size_t(sphere)] / lattice.largest_mass;
-        if (!(value > 0)) continue;
-        place.sphere[count] = sphere, kernels[count] = value, apart[count] = d, ++count, total += value;
-      }
+  lattice.for_each_within(rest, cells, [&](std::int32_t sphere) {
+    if (count == Place::kMost) return;
+    const Vec3 d = (model_.rest_position[std::size_t(sphere)] - rest) / reach;
+    const double value = kernel(dot(d, d)) * model_.mass[std::size_t(sphere)] / lattice.largest_mass;
+    if (!(value > 0)) return;
+    place.sphere[count] = sphere, kernels[count] = value, apart[count] = d, ++count, total += value;
+  });
   if (count == 0) return;
   Matrix moments{}, inverse;
   for (std::size_t i = 0; i < count; ++i) {

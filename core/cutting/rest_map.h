@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/model/model.h"
@@ -39,6 +40,14 @@ class RestMap {
   /// The spheres within `reach` [m] that carry a place at rest [m] of an organ.
   void find(std::size_t organ, Vec3 rest, double reach, Place& place) const;
 
+  /// Calls `visit(sphere)` for the spheres within `reach` [m] of a place at rest [m] of an organ, and for some beyond
+  /// it, cell by cell of the lattice.
+  template <class Visit>
+  void for_each_within(std::size_t organ, Vec3 rest, double reach, Visit&& visit) const {
+    constexpr double kRounding = 1e-9;
+    lattices_[organ].for_each_within(rest, reach / lattices_[organ].spacing * (1 + kRounding), visit);
+  }
+
   /// The place at rest that spheres within `reach` [m] carry to `point` when they are at `position` [m]; where no
   /// sphere is near, the nearest one carries it.
   Vec3 rest_of(std::size_t organ, const Vec3Array& position, Vec3 point, double reach) const;
@@ -62,6 +71,16 @@ class RestMap {
 
     std::int32_t at(std::int32_t i, std::int32_t j, std::int32_t k) const;
     Vec3 in_cells(Vec3 rest) const;
+    std::pair<LatticeCell, LatticeCell> cells_within(Vec3 rest, double cells) const;
+    /// Visits spheres whose cells are at most so many cells away along each axis.
+    template <class Visit>
+    void for_each_within(Vec3 rest, double cells, Visit&& visit) const {
+      const auto [from, to] = cells_within(rest, cells);
+      for (std::int32_t k = from[2]; k <= to[2]; ++k)
+        for (std::int32_t j = from[1]; j <= to[1]; ++j)
+          for (std::int32_t i = from[0]; i <= to[0]; ++i)
+            if (const std::int32_t sphere = at(i, j, k); sphere >= 0) visit(sphere);
+    }
   };
   Lattice make_lattice(const OrganRange& organ) const;
 

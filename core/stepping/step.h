@@ -66,8 +66,8 @@ struct StepperOptions {
   /// >= 1; more threads help from some thousand spheres on. Cuts that a tool can touch have one of their own.
   int threads = 1;
   elements::InstructionSet instruction_set = elements::best_instruction_set();
-  StageWatch* watch =
-      nullptr;  ///< told of the stages of each tick, which begins and ends in Stage::solve; must outlive the Stepper
+  /// Told of the stages of each tick, which begins and ends in Stage::solve; must outlive the Stepper.
+  StageWatch* watch = nullptr;
 };
 
 /// Advances States of one Model. It holds the kernels of the Model, their scratch memory and the threads, and no

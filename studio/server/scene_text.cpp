@@ -1,8 +1,6 @@
 #include "studio/server/scene_text.h"
 
-#include <algorithm>
-#include <cmath>
-
+#include "core/model/box.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/server/text.h"
 #include "studio/views/look.h"
@@ -19,14 +17,10 @@ void write_colour(output::JsonWriter& json, const char* key, const render::Colou
 
 /// The box around an organ's spheres at rest.
 void write_box(output::JsonWriter& json, const Model& model, const OrganRange& organ) {
-  Vec3 least{INFINITY, INFINITY, INFINITY}, most{-INFINITY, -INFINITY, -INFINITY};
-  for (std::int32_t i = organ.first; i < organ.first + organ.count; ++i) {
-    const Vec3 p = model.rest_position[std::size_t(i)];
-    least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
-    most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
-  }
-  json.key("least"), write_vector(json, least);
-  json.key("most"), write_vector(json, most);
+  Box box(model.rest_position[std::size_t(organ.first)]);
+  for (std::int32_t i = organ.first; i < organ.first + organ.count; ++i) box.add(model.rest_position[std::size_t(i)]);
+  json.key("least"), write_vector(json, box.low);
+  json.key("most"), write_vector(json, box.high);
 }
 
 /// Where a tool is taken up, if its author says that.

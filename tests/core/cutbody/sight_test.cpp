@@ -74,17 +74,18 @@ Seen seen_from(const CutGrid& grid, Index node) {
   const std::vector<Index> way = ways_from(grid, node);
   const CutGrid::Node home = grid.node(node);
   Seen seen;
-  for (Index i = 0; i < grid.count(); ++i) {
-    if (way[std::size_t(i)] < 0) continue;
-    seen.has_cut = seen.has_cut || (way[std::size_t(i)] < Sight::kMostHops && is_at_cut(grid, i));
+  for (Index i = 0; i < grid.count(); ++i)
+    seen.has_cut =
+        seen.has_cut || (way[std::size_t(i)] >= 0 && way[std::size_t(i)] < Sight::kMostHops && is_at_cut(grid, i));
+  for (Index sphere = 0; sphere < grid.sphere_count(); ++sphere) {
+    const Index i = grid.node_of_sphere(sphere);
+    if (i < 0 || way[std::size_t(i)] < 0) continue;
     Index up = 0, down = 0;
     for (std::size_t a = 0; a < 3; ++a)
       up = std::max(up, grid.node(i)[a] - home[a]), down = std::max(down, home[a] - grid.node(i)[a]);
     const Index detour = std::max(0, way[std::size_t(i)] - up - down - Sight::kGrazed);
-    if (detour > Sight::kMostDetour) continue;
-    for (const Index sphere : grid.spheres_at(i)) seen.sphere.push_back({sphere, detour});
+    if (detour <= Sight::kMostDetour) seen.sphere.push_back({sphere, detour});
   }
-  std::sort(seen.sphere.begin(), seen.sphere.end(), [](const auto& a, const auto& b) { return a.sphere < b.sphere; });
   return seen;
 }
 

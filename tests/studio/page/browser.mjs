@@ -66,13 +66,13 @@ export async function openBrowser(options = {}) {
     await context.close();
     rmSync(profile, { recursive: true, force: true });
   };
-  return { context, page, complaints, close };
+  return { page, complaints, close };
 }
 
 /** Serves `folder` and opens its page. */
 export async function openStudio(folder, port = 0, ...more) {
   let { server, address } = await serve(folder, port, more);
-  const { context, page, complaints, close: closeBrowser } = await openBrowser({
+  const { page, complaints, close: closeBrowser } = await openBrowser({
     ignoreHTTPSErrors: more.includes("--behind"), // a certificate of the test's own
   });
   page.on("dialog", (dialog) => complaints.push(`dialog: ${dialog.message()}`));
