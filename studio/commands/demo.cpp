@@ -124,6 +124,8 @@ int run_demo(const DemoArguments& arguments) {
   print("elements        %zu, of which %lld severed\n", model.element_count(), (long long)s.severed);
   print("tick time       p50 %.3f ms, p99 %.3f ms; %lld of %lld ticks late\n", s.tick_time_p50 * 1e3,
         s.tick_time_p99 * 1e3, (long long)recorded->run.late_ticks, (long long)s.ticks);
+  if (recorded->run.late_ticks > 0)
+    print("                late because of: %s (%s)\n", recorded->run.late_by.text().c_str(), session::kLateCausesSay);
   print("ticks compared  %lld\n", (long long)s.ticks);
   print("verdict         %s\n",
         verified == exit_good ? "same as recorded, to the bit" : "DIFFERENT from what was recorded");
