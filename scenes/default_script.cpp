@@ -138,7 +138,7 @@ std::vector<Vec3> path_through(const Top& top, double u) {
 void add_cut(Script& script, const ToolSpec& scalpel, const Table& table, const std::vector<Vec3>& path, double depth) {
   const Vec3 down = table.to_world({0, 0, -1}), clear{0, 0, depth + 0.020};
   ScriptStep cut, leave;
-  cut.cut = ScriptStep::Cut{{}, 0.040, {}};
+  cut.cut = ScriptStep::Cut{{}, 0.040, {}, {}};
   for (const Vec3& tip : path) cut.cut->path.push_back(whole_tenths(table.to_world(tip)));
   script.steps.push_back(take(scalpel.name, table.to_world(path.front() + clear), down));
   const Vec3 way = path.back() - path.front();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -80,6 +81,8 @@ void check_steps(Problems& problems, const Script& script, const Equipment& equi
     if (step.put_away == false) problems.add_rule(at + "/put_away", "must be true");
     if (step.press) check_direction(problems, at + "/press/direction", step.press->direction);
     if (step.release) check_direction(problems, at + "/release/direction", step.release->direction);
+    if (step.cut && step.cut->turns.value_or(false) && !step.cut->smooth.value_or(false))
+      problems.add_rule(at + "/cut/turns", "a blade turns along a smooth cut only", "write \"smooth\": true beside it");
     if ((step.move || step.press || step.release || step.cut) && !holding.has_tool)
       problems.add(at, "there is no tool in the hand here", "take one first", at);
   }
@@ -96,17 +99,52 @@ Quat orientation_of(Vec3 pointing) {
   return {w / length, to.y / length, -to.x / length, 0};
 }
 
-/// `orientation` with a turn about the tool's own axis before it, so that the tool's +x looks to `facing` as well as it
-/// can.
-Quat facing(Quat orientation, Vec3 facing) {
-  const Vec3 local = rotate({orientation.w, -orientation.x, -orientation.y, -orientation.z}, facing);
-  const double length = std::sqrt(local.x * local.x + local.y * local.y);
-  if (length == 0) return orientation;
-  // Half of the angle whose cosine is x / length.
-  const double cosine = local.x / length;
-  const double w = std::sqrt((1 + cosine) / 2), z = (local.y < 0 ? -1 : 1) * std::sqrt((1 - cosine) / 2);
+/// `orientation` with a turn about the tool's own axis before it.
+Quat turned(Quat orientation, ToolTurn turn) {
+  const double w = std::sqrt((1 + turn.cosine) / 2), z = (turn.sine < 0 ? -1 : 1) * std::sqrt((1 - turn.cosine) / 2);
   const Quat q = orientation;
   return {q.w * w - q.z * z, q.x * w + q.y * z, q.y * w - q.x * z, q.z * w + q.w * z};
+}
+
+/// From a tool's +x to what lies in a direction, seen along its axis; none along the axis itself.
+std::optional<ToolTurn> turn_towards(Quat orientation, Vec3 direction) {
+  const Vec3 local = rotate({orientation.w, -orientation.x, -orientation.y, -orientation.z}, direction);
+  const double length = std::sqrt(local.x * local.x + local.y * local.y);
+  if (!(length > 1e-6 * std::abs(local.z))) return std::nullopt;
+  return ToolTurn{local.x / length, local.y / length};
+}
+
+/// `orientation` turned about the tool's own axis, so that its +x looks to `facing` as well as it can.
+Quat facing(Quat orientation, Vec3 facing) {
+  const std::optional<ToolTurn> turn = turn_towards(orientation, facing);
+  return turn ? turned(orientation, *turn) : orientation;
+}
+
+/// Between two turns that are less than half a turn apart.
+ToolTurn between(ToolTurn from, ToolTurn to, double part) {
+  const double cosine = from.cosine + part * (to.cosine - from.cosine), sine = from.sine + part * (to.sine - from.sine);
+  const double length = std::sqrt(cosine * cosine + sine * sine);
+  return length > 0 ? ToolTurn{cosine / length, sine / length} : to;
+}
+
+/// How much a way has turned at each of its points since the first one, seen along the axis of a tool. Pieces along the
+/// axis go on as what is before them.
+std::vector<ToolTurn> turns_along(const std::vector<Vec3>& way, Quat orientation) {
+  std::vector<std::optional<ToolTurn>> pieces;
+  for (std::size_t i = 1; i < way.size(); ++i) pieces.push_back(turn_towards(orientation, way[i] - way[i - 1]));
+  const auto known = std::find_if(pieces.begin(), pieces.end(), [](const auto& piece) { return piece.has_value(); });
+  if (known == pieces.end()) return {};
+  const ToolTurn first = **known;
+  ToolTurn before = first;
+  std::vector<ToolTurn> turns;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    const ToolTurn after = i < pieces.size() ? pieces[i].value_or(before) : before;
+    const ToolTurn here = between(before, after, 0.5);
+    turns.push_back(
+        {here.cosine * first.cosine + here.sine * first.sine, here.sine * first.cosine - here.cosine * first.sine});
+    before = after;
+  }
+  return turns;
 }
 
 /// Share of the way after share `t` of the time: speed rises along a cubic in the first fifth and falls in
@@ -244,7 +282,9 @@ void ScriptPlayer::plan(std::size_t first_step, Inputs hands) {
     if (step.cut && step.cut->smooth.value_or(false)) {
       std::vector<Vec3> points{from};
       points.insert(points.end(), step.cut->path.begin(), step.cut->path.end());
-      follow(curve_through(points), step.cut->speed);
+      Stretch& stretch = follow(curve_through(points), step.cut->speed);
+      if (step.cut->turns.value_or(false)) stretch.turns = turns_along(stretch.points, hand.world_from_tool);
+      if (!stretch.turns.empty()) hand.world_from_tool = turned(hand.world_from_tool, stretch.turns.back());
     } else if (step.cut) {
       for (const Vec3& point : step.cut->path) follow({hand.position, point}, step.cut->speed);
     }
@@ -283,19 +323,21 @@ Inputs ScriptPlayer::at(std::int64_t tick) const {
   if (stretches_.empty()) return {};
   const Stretch& stretch = stretch_at(tick);
   Inputs inputs = stretch.held;
-  Vec3& position = inputs.hand(stretch.hand).position;
+  Hand& hand = inputs.hand(stretch.hand);
   const std::int64_t done = std::clamp<std::int64_t>(tick - stretch.first + 1, 0, stretch.count);
   const double share = double(done) / double(stretch.planned);
-  const auto& [points, lengths] = std::tie(stretch.points, stretch.lengths);
+  const auto& [points, lengths, turns] = std::tie(stretch.points, stretch.lengths, stretch.turns);
   const double length = eased(share) * lengths.back();
   const auto next = std::upper_bound(lengths.begin(), lengths.end(), length);
   if (next == lengths.end()) {
-    position = points.back();
+    hand.position = points.back();
+    if (!turns.empty()) hand.world_from_tool = turned(hand.world_from_tool, turns.back());
     return inputs;
   }
   const std::size_t i = std::size_t(next - lengths.begin());
   const double part = (length - lengths[i - 1]) / (lengths[i] - lengths[i - 1]);
-  position = points[i - 1] + part * (points[i] - points[i - 1]);
+  hand.position = points[i - 1] + part * (points[i] - points[i - 1]);
+  if (!turns.empty()) hand.world_from_tool = turned(hand.world_from_tool, between(turns[i - 1], turns[i], part));
   return inputs;
 }
 

@@ -57,6 +57,7 @@ struct CutStep {
   std::vector<Vec3> path;      ///< of the tip, from where it is [m]
   double speed = 0;            ///< [m/s]
   std::optional<bool> smooth;  ///< along one curve through the points; otherwise straight, at rest at each
+  std::optional<bool> turns;   ///< about its own axis, as much as the curve does; only with `smooth`
   friend bool operator==(const CutStep&, const CutStep&) = default;
 };
 
@@ -120,6 +121,11 @@ struct ScriptPlace {
 Script organ_script(const SceneSpec& scene, std::span<const FilledOrgan> organs, std::size_t index,
                     ScriptPlace place = {});
 
+/// How far a tool has turned about its own axis, its +z.
+struct ToolTurn {
+  double cosine = 1, sine = 0;
+};
+
 /// How a press to a force ended.
 enum class PressEnd { none, at_force, at_depth };
 
@@ -153,6 +159,7 @@ class ScriptPlayer {
     Inputs held;                        ///< what both hands do, but for the place of the one that moves
     std::vector<Vec3> points;           ///< of the way, straight from one to the next; at least one [m]
     std::vector<double> lengths;        ///< of the way up to each point [m]
+    std::vector<ToolTurn> turns;        ///< since the first point, at each; empty: the tool does not turn
     std::size_t step = 0;               ///< of the script, to which it belongs
     double until_force = 0;             ///< [N]; 0: none
   };

@@ -71,6 +71,11 @@ void describe_fields(V& v, ScriptStep::Cut& cut) {
   v.flag(Key{"smooth", "Moves along one smooth curve through the points without stopping.", false,
              "straight from point to point, with a stop at each"},
          cut.smooth);
+  v.flag(Key{"turns",
+             "With smooth: the tool turns about its own axis as much as the curve does, so that a blade goes on to "
+             "look along it.",
+             false, "the tool does not turn"},
+         cut.turns);
   v.number(required("speed_mm_per_s", "Speed of each straight piece after its start and before its end."), cut.speed,
            units::millimetre_per_second, script_ranges::speed_mm_per_s);
 }

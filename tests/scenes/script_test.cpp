@@ -129,7 +129,8 @@ const std::string kEveryStep = R"(
   {"release": {"distance_mm": 3.3, "speed_mm_per_s": 33.3}},
   {"wait_s": 0.35},
   {"cut": {"path_mm": [[1.7, 2.9, 10.1], [5.3, 2.9, 10.1], [9.7, 3.1, 9.3]], "speed_mm_per_s": 30.7}},
-  {"cut": {"path_mm": [[1.7, 2.9, 10.1], [5.3, 2.9, 10.1], [9.7, 3.1, 9.3]], "speed_mm_per_s": 30.7, "smooth": true}},
+  {"cut": {"path_mm": [[1.7, 2.9, 10.1], [5.3, 2.9, 10.1], [9.7, 3.1, 9.3]], "speed_mm_per_s": 30.7, "smooth": true,
+           "turns": true}},
   {"put_away": true}, {"wait_s": 0.1})";
 
 TEST(WriteScript, WhatIsWrittenIsReadBackEqual) {
@@ -363,6 +364,64 @@ TEST(ScriptPlayer, ASmoothCutOfPointsThatCoincideOrOfOneIsAStraightWay) {
     }
     EXPECT_EQ(player.at(player.tick_count()).position, (Vec3{0, 0, 0.04}));
   }
+}
+
+const std::string kTakeScalpel = R"({"take": {"tool": "scalpel", "at_mm": [20, 0, 50], "facing": [0, 1, 0]}})";
+
+/// Around once, from where the scalpel is taken.
+const std::string kRing =
+    R"("path_mm": [[14, 14, 50], [0, 20, 50], [-14, 14, 50], [-20, 0, 50], [-14, -14, 50], [0, -20, 50], [14, -14, 50],
+                [20, 0, 50]], "smooth": true, "speed_mm_per_s": 30)";
+
+TEST(ScriptPlayer, ABladeThatTurnsLooksAlongItsWay) {
+  const scenes::ScriptPlayer player(read_good(kTakeScalpel + R"(, {"cut": {"turns": true, )" + kRing + "}}"),
+                                    tools_of_model(), kTick);
+  Inputs before = player.at(1);
+  for (std::int64_t tick = 2; tick < player.tick_count(); ++tick) {
+    const Inputs now = player.at(tick);
+    const Vec3 facing = rotate(now.world_from_tool, {1, 0, 0}), way = now.position - before.position;
+    // It begins along y, where the curve through so few points begins 22 degrees off.
+    EXPECT_GT(dot(facing, way), std::cos(0.5) * norm(way)) << "tick " << tick;
+    EXPECT_NEAR(norm(rotate(now.world_from_tool, {0, 0, 1}) - Vec3{0, 0, 1}), 0, 1e-12) << "it stays upright";
+    EXPECT_GT(dot(facing, rotate(before.world_from_tool, {1, 0, 0})), std::cos(0.01)) << "no jump, tick " << tick;
+    before = now;
+  }
+  EXPECT_LT(dot(rotate(player.at(player.tick_count() / 2).world_from_tool, {1, 0, 0}), Vec3{0, 1, 0}), -0.9)
+      << "half of the way around";
+}
+
+TEST(ScriptPlayer, WhatFollowsACutThatTurnedGoesOnAsTheBladeIsThen) {
+  const scenes::ScriptPlayer player(read_good(kTakeScalpel +
+                                              R"(, {"cut": {"turns": true, "smooth": true, "speed_mm_per_s": 30,
+                     "path_mm": [[20, 10, 50], [10, 20, 50], [0, 20, 50]]}}, {"wait_s": 0.1},
+                     {"cut": {"speed_mm_per_s": 30, "path_mm": [[0, 20, 40]]}})"),
+                                    tools_of_model(), kTick);
+  const Quat last = player.at(player.tick_count()).world_from_tool;
+  EXPECT_LT(norm(rotate(last, {1, 0, 0}) - Vec3{-1, 0, 0}), 0.2);
+  bool has_come = false;
+  for (std::int64_t tick = 0; tick < player.tick_count(); ++tick) {
+    const Inputs now = player.at(tick);
+    has_come = has_come || now.position == Vec3{0, 0.02, 0.05};
+    if (has_come) {
+      EXPECT_EQ(now.world_from_tool, last) << tick;
+    }
+  }
+  EXPECT_TRUE(has_come);
+}
+
+TEST(ScriptPlayer, AWayAlongTheBladesOwnAxisTurnsNothing) {
+  const scenes::ScriptPlayer player(
+      read_good(kTakeScalpel +
+                R"(, {"cut": {"turns": true, "smooth": true, "speed_mm_per_s": 30, "path_mm": [[20, 0, 30]]}})"),
+      tools_of_model(), kTick);
+  EXPECT_EQ(player.at(player.tick_count()).world_from_tool, player.at(0).world_from_tool);
+}
+
+TEST(ReadScript, ABladeTurnsAlongASmoothCutOnly) {
+  EXPECT_EQ(
+      errors_of(script_of(kTake + ",\n" + R"({"cut": {"turns": true, "path_mm": [[0, 0, 1]], "speed_mm_per_s": 5}})")),
+      "s.json:3:19: error: /steps/1/cut/turns: a blade turns along a smooth cut only (write \"smooth\": true "
+      "beside it)\n");
 }
 
 TEST(DefaultScript, OfAnyBlockIsReadWithTheScenesTools) {
