@@ -414,7 +414,10 @@ void describe_fields(V& v, SceneSpec& scene) {
                "s/m an impact at 30 mm/s keeps 25 % of its kinetic energy.",
                false, "50"},
            scene.contact_damping, units::second_per_metre, within(0, 1e4));
-  v.flag(Key{"lips_meet", "The two sides of a cut meet again without passing through each other."}, scene.lips_meet);
+  v.flag(Key{"lips_meet",
+             "The two sides of a cut meet again without passing through each other, and what is cut off rests on what "
+             "it was cut from."},
+         scene.lips_meet);
   v.number(
       Key{"cut_face_stiffening",
           "With `lips_meet`: factor b by which the contact of cut faces stiffens, 1 + (b p / s)^2 at a penetration "

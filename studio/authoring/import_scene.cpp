@@ -97,7 +97,7 @@ class Import {
       scene_ = present_.scene.spec;
       return {};
     }
-    scene_.name = stem_;
+    scene_.name = stem_, scene_.lips_meet = true;
     if (Errors errors = check_mesh_file(beside(stem_ + ".obj")); !errors.empty()) return errors;
     Errors errors;
     for (const std::string& file : {request_.scene, beside(stem_ + ".script.json")})
@@ -296,7 +296,7 @@ class Import {
     scenes::SceneSpec scene;
     scene.name = scene_.name;
     scene.gravity = scene_.gravity, scene.tick = scene_.tick, scene.settle = scene_.settle;
-    scene.solver = scene_.solver;
+    scene.solver = scene_.solver, scene.lips_meet = scene_.lips_meet;
     scene.organs = {draft.spec};
     scene.tools = tools_for({&draft.filled, 1});
     return scene;
