@@ -105,7 +105,8 @@ void make_room(Reel& reel, recordings::SessionReader& session, const render::Pic
   std::vector<render::PixelBox> panels = reel.overlay->standing_panels(data);
   for (std::size_t i = 0; i < reel.insets.size(); ++i) panels.push_back(Inset::box(size, int(i)));
   if (panels.empty()) return;
-  const std::vector<Vec3> organs = drawn_points(reel.renderer->scene(), reel.look.draw.view);
+  std::vector<Vec3> organs = drawn_points(reel.renderer->scene(), reel.look.draw.view);
+  organs.insert(organs.end(), reel.look.pieces.begin(), reel.look.pieces.end());
   reel.look.draw.camera = beside_panels(reel.look.draw.camera, size, panels, {organs, places_of_tools(session)});
 }
 

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <memory>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "core/contact/drawn_surfaces.h"
@@ -24,10 +25,13 @@ struct Subject {
   render::View view = render::View::surface;
   std::vector<Vec3> points;  ///< its places [m]; empty: there is no such event
   std::vector<Vec3> organs;  ///< of those that it happens to, at rest [m]
+  std::vector<Vec3> pieces;  ///< see EventCamera
 };
 
 /// Walls farther from the organs at rest than this part of their size are those of pieces that fell or flew away.
 constexpr double kGone = 0.5;
+/// Tissue that has moved farther than this part of that size lies beside its organ.
+constexpr double kBeside = 0.2;
 
 void append(std::vector<Vec3>& all, const std::vector<Vec3>& more) { all.insert(all.end(), more.begin(), more.end()); }
 
@@ -47,7 +51,12 @@ void find_walls(const State& state, Subject& subject) {
     const std::size_t before = subject.points.size();
     std::copy_if(position.begin() + std::ptrdiff_t(cut.outer_vertex_count()), position.end(),
                  std::back_inserter(subject.points), [&](Vec3 p) { return around.meets(Box(p)); });
-    if (subject.points.size() > before) append(subject.organs, model.surfaces[organ].vertex);
+    if (subject.points.size() == before) continue;
+    append(subject.organs, model.surfaces[organ].vertex);
+    for (std::size_t v = 0; v < cut.outer_vertex_count(); ++v) {
+      const bool has_moved = norm(position[v] - cut.surface().vertex[v]) > kBeside * bounds.diagonal();
+      if (has_moved && around.meets(Box(position[v]))) subject.pieces.push_back(position[v]);
+    }
   }
 }
 
@@ -71,7 +80,7 @@ constexpr render::Colour kGrey{0.25, 0.25, 0.25}, kGreen{0, 0.9, 0};
 
 /// Walls and lips of cuts.
 Subject wound_of(const render::SceneView& scene, const State& state) {
-  Subject subject{{scene.model, {}, {}}, render::View::surface, {}, {}};
+  Subject subject{{scene.model, {}, {}}, render::View::surface, {}, {}, {}};
   if (state.swept.size() == 0) return subject;
   for (const OrganRange& organ : scene.model->organs) subject.scene.looks.push_back({organ.name, kGrey, kGreen, 0, {}});
   find_walls(state, subject);
@@ -82,7 +91,7 @@ Subject wound_of(const render::SceneView& scene, const State& state) {
 Subject press_of(const render::SceneView& scene, const State& state) {
   constexpr double kAround = 1.5;  // spacings of the organ beyond a tool's surface
   const Model& model = *scene.model;
-  Subject subject{{&model, {}, {}}, render::View::spheres, {}, {}};
+  Subject subject{{&model, {}, {}}, render::View::spheres, {}, {}, {}};
   subject.scene.sphere_colours.assign(state.position.size(), kGrey);
   for (std::size_t number = 0; number < kMostHands; ++number) {
     const Hand& hand = state.last_inputs.hand(number);
@@ -145,19 +154,21 @@ std::vector<Vec3> framed(const render::SceneView& scene, const std::vector<Vec3>
 
 }  // namespace
 
-Result<std::optional<Camera>> event_camera(Event event, const render::SceneView& scene, const State& state,
-                                           const Camera& usual, double aspect) {
+Result<std::optional<EventCamera>> event_camera(Event event, const render::SceneView& scene, const State& state,
+                                                const Camera& usual, double aspect) {
   constexpr int kWidth = 224, kHeight = 126;
   constexpr double kUsualCounts = 0.5;  // what is seen from the other side counts so much less
   constexpr int kWhole = 4;             // power of the part of the organ in the picture
-  constexpr double kFarther = 1.3;      // so much farther it stands where that shows the whole organ
-  const Subject subject = event == Event::wound ? wound_of(scene, state) : press_of(scene, state);
-  if (subject.points.empty()) return std::optional<Camera>();
+  constexpr double kFarther = 1.3;      // so much farther it stands where that shows the whole organ,
+  constexpr double kForPieces = 2;      // or pieces beside it, too
+  Subject subject = event == Event::wound ? wound_of(scene, state) : press_of(scene, state);
+  if (subject.points.empty()) return std::optional<EventCamera>();
   Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(kWidth, kHeight, subject.scene);
   if (!renderer) return renderer.errors();
   const std::vector<Vec3> ways = directions(*scene.model, usual), points = framed(scene, subject.points, aspect);
   std::vector<Vec3> whole = points;
-  append(whole, subject.organs);
+  append(subject.organs, subject.pieces), append(whole, subject.organs);
+  const double most_far = subject.pieces.empty() ? kFarther : kForPieces;
   const Vec3 up = render::up_of(*scene.model);
   double best = 0;
   std::optional<Camera> found;
@@ -167,7 +178,7 @@ Result<std::optional<Camera>> event_camera(Event event, const render::SceneView&
     };
     Camera camera = fitted(points);
     if (const Camera farther = fitted(whole);
-        norm(farther.eye - farther.target) < kFarther * norm(camera.eye - camera.target))
+        norm(farther.eye - farther.target) < most_far * norm(camera.eye - camera.target))
       camera = farther;
     const double likeness = 0.5 + 0.5 * dot(way, ways.front());
     const double in_picture = share_in_picture(camera, aspect, subject.organs);
@@ -175,7 +186,8 @@ Result<std::optional<Camera>> event_camera(Event event, const render::SceneView&
                          std::pow(in_picture, kWhole);
     if (score > best) best = score, found = camera;
   }
-  return found;
+  if (!found) return std::optional<EventCamera>();
+  return std::optional<EventCamera>({*found, std::move(subject.pieces)});
 }
 
 }  // namespace ctpm::views

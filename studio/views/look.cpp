@@ -177,7 +177,7 @@ render::Camera section_camera(const render::SceneView& view, char axis, const re
 
 struct NamedCamera {
   std::string name;
-  render::Camera camera;
+  EventCamera found;
 };
 
 /// The camera on what a State tells: on its wound, or where there is none on its press; `only`: on that alone. Errors:
@@ -194,7 +194,7 @@ Result<std::optional<NamedCamera>> find_event(const std::string& only, const ren
   for (const auto& [name, event, missing] : kEvents) {
     if (!only.empty() && only != name) continue;
     if (told) {
-      const Result<std::optional<render::Camera>> found = event_camera(event, view, *told, usual, aspect);
+      const Result<std::optional<EventCamera>> found = event_camera(event, view, *told, usual, aspect);
       if (!found) return found.errors();
       if (*found) return std::optional<NamedCamera>({name, **found});
     }
@@ -237,7 +237,7 @@ void choose_camera(const std::string& name, const std::string& cutaway, const sc
   const Result<std::optional<NamedCamera>> found = find_event(is_event ? name : "", view, aspect, *usual, told);
   if (!found) return add(found.errors());
   if (!*found) return;
-  const render::Camera& near = (*found)->camera;
+  const render::Camera& near = (*found)->found.camera;
   if (look.follows) {
     // It comes close by itself.
     render::Camera& camera = look.draw.camera;
@@ -246,6 +246,7 @@ void choose_camera(const std::string& name, const std::string& cutaway, const sc
     return;
   }
   look.draw.camera = near, look.camera = (*found)->name, look.is_found = true;
+  look.pieces = (*found)->found.pieces;
 }
 
 }  // namespace

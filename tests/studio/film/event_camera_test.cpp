@@ -2,13 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <memory>
-
 #include <algorithm>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <sstream>
 
+#include "core/cutting/pieces.h"
+#include "core/stepping/step.h"
 #include "recordings/session_reader.h"
 #include "scenes/scene_file.h"
+#include "scenes/script.h"
 #include "studio/film/reel.h"
+#include "studio/loading/loaded_scene.h"
 #include "studio/render/renderer.h"
 #include "studio/views/look.h"
 #include "studio/views/view_of_scene.h"
@@ -175,7 +181,7 @@ Vec3 sight_of_press(const Model& model) {
   const auto camera =
       views::event_camera(views::Event::press, view, state, render::default_camera(view, kAspect), kAspect);
   EXPECT_TRUE(camera && *camera);
-  const Vec3 sight = (*camera)->target - (*camera)->eye;
+  const Vec3 sight = (*camera)->camera.target - (*camera)->camera.eye;
   return sight / norm(sight);
 }
 
@@ -192,6 +198,58 @@ TEST(EventCamera, AnOrganAsideDoesNotTurnIt) {
   ASSERT_TRUE(network::add_organ(pair->model, aside, settings));
   constexpr double kAStep = 0.9;  // cosine of somewhat less than the 30 degrees between directions
   EXPECT_GT(dot(sight_of_press(alone->model), sight_of_press(pair->model)), kAStep);
+}
+
+/// The shipped kidney whose cap a knife cut off, up to the tick in which it has left; the cap moved aside by `by` [m].
+struct CutCap {
+  loading::LoadedScene scene;
+  State state;
+  std::vector<std::uint8_t> is_cap;  ///< spheres
+};
+std::optional<CutCap> cut_cap(Vec3 by) {
+  constexpr std::int64_t kIsOff = 3700;  // ticks
+  const std::string folder = std::string(CTPM_SOURCE_DIR) + "/scenes/";
+  auto scene = loading::load_whole_scene(folder + "kidney-knife.json");
+  if (!scene) return {};
+  const Model& model = scene->built.model;
+  std::ifstream file(folder + "scripts/kidney-knife-cap.json");
+  std::ostringstream text;
+  text << file.rdbuf();
+  const auto script = scenes::read_script_for(text.str(), "script", model);
+  if (!script) return {};
+  const scenes::ScriptPlayer player(*script, model.tools, model.tick);
+  State state = rest_state(model);
+  {
+    stepping::Stepper stepper(model);
+    for (std::int64_t tick = 0; tick < kIsOff; ++tick)
+      if (stepping::is_refused(stepper.step(state, player.at(tick)).status)) return {};
+  }
+  cutting::Pieces pieces(model);
+  pieces.find(state);
+  std::vector<std::uint8_t> is_cap;
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) {
+    is_cap.push_back(pieces.piece()[i] != pieces.piece()[0]);  // the first sphere is at the bottom
+    if (is_cap[i] != 0) state.position.set(i, state.position[i] + by);
+  }
+  return CutCap{*std::move(scene), std::move(state), std::move(is_cap)};
+}
+
+TEST(EventCamera, APieceThatLiesBesideItsOrganIsInThePicture) {
+  const auto cut = cut_cap({0, 0.07, -0.03});
+  ASSERT_TRUE(cut);
+  const scenes::SceneSpec& spec = cut->scene.scene.spec;
+  const auto look = views::find_look({}, spec, views::view_of(spec, cut->scene.built.model), kAspect, &cut->state);
+  ASSERT_TRUE(look);
+  EXPECT_EQ(look->camera, "wound");
+  EXPECT_FALSE(look->pieces.empty());
+  int in = 0, points = 0;
+  for (std::size_t i = 0; i < cut->is_cap.size(); ++i) {
+    if (cut->is_cap[i] == 0) continue;
+    const render::Pixel at = render::project(look->draw.camera, 1280, 720, cut->state.position[i]);
+    ++points, in += at.x > 0 && at.x < 1280 && at.y > 0 && at.y < 720;
+  }
+  EXPECT_GT(points, 30);
+  EXPECT_EQ(in, points);
 }
 
 /// Pixels that show the pressed place, of which the spheres are green.
