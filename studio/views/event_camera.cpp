@@ -159,16 +159,14 @@ Result<std::optional<EventCamera>> event_camera(Event event, const render::Scene
   constexpr int kWidth = 224, kHeight = 126;
   constexpr double kUsualCounts = 0.5;  // what is seen from the other side counts so much less
   constexpr int kWhole = 4;             // power of the part of the organ in the picture
-  constexpr double kFarther = 1.3;      // so much farther it stands where that shows the whole organ,
-  constexpr double kForPieces = 2;      // or pieces beside it, too
+  constexpr double kFarther = 1.3;      // so much farther it stands where that shows the whole organ
   Subject subject = event == Event::wound ? wound_of(scene, state) : press_of(scene, state);
   if (subject.points.empty()) return std::optional<EventCamera>();
   Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(kWidth, kHeight, subject.scene);
   if (!renderer) return renderer.errors();
   const std::vector<Vec3> ways = directions(*scene.model, usual), points = framed(scene, subject.points, aspect);
   std::vector<Vec3> whole = points;
-  append(subject.organs, subject.pieces), append(whole, subject.organs);
-  const double most_far = subject.pieces.empty() ? kFarther : kForPieces;
+  append(whole, subject.organs);
   const Vec3 up = render::up_of(*scene.model);
   double best = 0;
   std::optional<Camera> found;
@@ -178,7 +176,7 @@ Result<std::optional<EventCamera>> event_camera(Event event, const render::Scene
     };
     Camera camera = fitted(points);
     if (const Camera farther = fitted(whole);
-        norm(farther.eye - farther.target) < most_far * norm(camera.eye - camera.target))
+        norm(farther.eye - farther.target) < kFarther * norm(camera.eye - camera.target))
       camera = farther;
     const double likeness = 0.5 + 0.5 * dot(way, ways.front());
     const double in_picture = share_in_picture(camera, aspect, subject.organs);

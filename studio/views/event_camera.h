@@ -22,7 +22,7 @@ struct EventCamera {
 };
 
 /// A camera on an event: of directions around the organs the one from which most of it is visible, rather those near
-/// `usual`. It shows the event and what is around it, and pieces beside the organs where that fits. None if the State
+/// `usual`. It shows the event and what is around it. None if the State
 /// tells of no such event. Errors: no OpenGL 3.3.
 Result<std::optional<EventCamera>> event_camera(Event event, const render::SceneView& scene, const State& state,
                                                 const render::Camera& usual, double aspect);

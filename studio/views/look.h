@@ -28,7 +28,7 @@ struct Look {
   bool follows = false;      ///< the camera follows the tool
   bool is_found = false;     ///< the camera stands where it sees best, not where somebody placed it
   std::string camera;        ///< its name: a camera of the scene, `fitted`, `section`, `wound`, `press` or `follow`
-  std::vector<Vec3> pieces;  ///< where what was cut off lies, if that decided where the camera stands [m]
+  std::vector<Vec3> pieces;  ///< where what was cut off lies beside its organ, if a camera was found for it [m]
 
   /// The options for one moment of the scene. `moments`: see following_camera().
   render::DrawOptions at(const render::SceneView& scene, std::span<const Inputs> moments) const;

@@ -3,21 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <memory>
-#include <optional>
-#include <sstream>
+#include <string>
 
 #include "core/cutting/pieces.h"
-#include "core/stepping/step.h"
 #include "recordings/session_reader.h"
 #include "scenes/scene_file.h"
-#include "scenes/script.h"
 #include "studio/film/reel.h"
-#include "studio/loading/loaded_scene.h"
+#include "studio/film/schedule.h"
 #include "studio/render/renderer.h"
 #include "studio/views/look.h"
 #include "studio/views/view_of_scene.h"
+#include "tests/studio/commands/run_program.h"
 #include "tests/studio/render/scene.h"
 
 namespace ctpm {
@@ -200,53 +197,31 @@ TEST(EventCamera, AnOrganAsideDoesNotTurnIt) {
   EXPECT_GT(dot(sight_of_press(alone->model), sight_of_press(pair->model)), kAStep);
 }
 
-/// The shipped kidney whose cap a knife cut off, up to the tick in which it has left; the cap moved aside by `by` [m].
-struct CutCap {
-  loading::LoadedScene scene;
-  State state;
-  std::vector<std::uint8_t> is_cap;  ///< spheres
-};
-std::optional<CutCap> cut_cap(Vec3 by) {
-  constexpr std::int64_t kIsOff = 3700;  // ticks
-  const std::string folder = std::string(CTPM_SOURCE_DIR) + "/scenes/";
-  auto scene = loading::load_whole_scene(folder + "kidney-knife.json");
-  if (!scene) return {};
-  const Model& model = scene->built.model;
-  std::ifstream file(folder + "scripts/kidney-knife-cap.json");
-  std::ostringstream text;
-  text << file.rdbuf();
-  const auto script = scenes::read_script_for(text.str(), "script", model);
-  if (!script) return {};
-  const scenes::ScriptPlayer player(*script, model.tools, model.tick);
-  State state = rest_state(model);
-  {
-    stepping::Stepper stepper(model);
-    for (std::int64_t tick = 0; tick < kIsOff; ++tick)
-      if (stepping::is_refused(stepper.step(state, player.at(tick)).status)) return {};
-  }
-  cutting::Pieces pieces(model);
-  pieces.find(state);
-  std::vector<std::uint8_t> is_cap;
-  for (std::size_t i = 0; i < model.sphere_count(); ++i) {
-    is_cap.push_back(pieces.piece()[i] != pieces.piece()[0]);  // the first sphere is at the bottom
-    if (is_cap[i] != 0) state.position.set(i, state.position[i] + by);
-  }
-  return CutCap{*std::move(scene), std::move(state), std::move(is_cap)};
-}
-
-TEST(EventCamera, APieceThatLiesBesideItsOrganIsInThePicture) {
-  const auto cut = cut_cap({0, 0.07, -0.03});
-  ASSERT_TRUE(cut);
-  const scenes::SceneSpec& spec = cut->scene.scene.spec;
-  const auto look = views::find_look({}, spec, views::view_of(spec, cut->scene.built.model), kAspect, &cut->state);
-  ASSERT_TRUE(look);
-  EXPECT_EQ(look->camera, "wound");
-  EXPECT_FALSE(look->pieces.empty());
+TEST(WoundOfAFilm, APieceThatFellBesideItsOrganIsInThePictureUntilTheEnd) {
+  const testing::TemporaryFolder folder;
+  const std::string scenes = std::string(CTPM_SOURCE_DIR) + "/scenes/";
+  const auto recorded = testing::run_ctpm({"record", scenes + "kidney-knife.json", "--script",
+                                           scenes + "scripts/kidney-knife-cap.json", "-o", "cap.ctpm", "--fast"},
+                                          folder.path());
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  auto reader = recordings::SessionReader::open((folder.path() / "cap.ctpm").string());
+  ASSERT_TRUE(reader);
+  auto ticks = film::schedule({&*reader}, {.range = {}, .frame_s = 0.1, .matched = {}, .slow = {}});
+  ASSERT_TRUE(ticks);
+  const render::PictureSize size{1280, 720};
+  const auto reel = film::make_reel(*reader, ticks->front(), size, {});
+  ASSERT_TRUE(reel);
+  EXPECT_EQ(reel->look.camera, "wound");
+  const auto end = reader->keyframe_at_or_before(reader->tick_count());
+  ASSERT_TRUE(end);
+  cutting::Pieces pieces(reader->start().model);
+  EXPECT_EQ(pieces.find(end->state), 2);
   int in = 0, points = 0;
-  for (std::size_t i = 0; i < cut->is_cap.size(); ++i) {
-    if (cut->is_cap[i] == 0) continue;
-    const render::Pixel at = render::project(look->draw.camera, 1280, 720, cut->state.position[i]);
-    ++points, in += at.x > 0 && at.x < 1280 && at.y > 0 && at.y < 720;
+  for (std::size_t i = 0; i < end->state.position.size(); ++i) {
+    if (pieces.piece()[i] == pieces.piece()[0]) continue;  // the first sphere is at the bottom
+    EXPECT_LT(end->state.position[i].z, 0.025) << "on the table";
+    const render::Pixel at = render::project(reel->look.draw.camera, size.width, size.height, end->state.position[i]);
+    ++points, in += at.x > 0 && at.x < size.width && at.y > 0 && at.y < size.height;
   }
   EXPECT_GT(points, 30);
   EXPECT_EQ(in, points);
