@@ -55,6 +55,11 @@ Result<Done> compare_phases(const loading::LoadedScene& own, const std::string& 
     scenes::FillSpec& fill = filled.scene.organs[0].fill;
     fill.radius *= factor, fill.gap *= factor;
     const Result<fidelity::SceneResult> turned = fidelity::measure_scene_turns(filled, turns);
+    if (!turned && coarser > 0) {
+      study.section.paragraphs.push_back(left_out_sentence(own, factor, turned.errors()));
+      advance();
+      continue;
+    }
     if (!turned) return turned.errors();
     const Result<loading::LoadedScene> scene = load_refilled(own, factor);
     if (!scene) return scene.errors();

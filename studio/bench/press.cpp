@@ -77,6 +77,12 @@ Result<loading::LoadedScene> load_refilled(const loading::LoadedScene& own, doub
   });
 }
 
+std::string left_out_sentence(const loading::LoadedScene& own, double factor, const Errors& errors) {
+  const double radius = factor * own.scene.spec.organs[0].fill.radius;
+  return "Spheres of r = " + output::short_number(1e3 * radius, 3) +
+         " mm are too coarse for this scene and left out: " + errors.front().message + ".";
+}
+
 std::vector<reports::Cell> row_of(const std::string& study, const std::string& scene, const std::string& model,
                                   const PressedOrgan& organ, double tick, reports::Cell position_error,
                                   double force_error) {

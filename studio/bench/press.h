@@ -35,6 +35,9 @@ Result<PressedOrgan> press_organ(const loading::LoadedScene& scene, const Model&
 /// its own; contacts as stiff as those of its own filling. Errors: those of the scene.
 Result<loading::LoadedScene> load_refilled(const loading::LoadedScene& own, double factor);
 
+/// Says why spheres `factor` times as large as the scene's own cannot be studied: `errors` of load_refilled().
+std::string left_out_sentence(const loading::LoadedScene& own, double factor, const Errors& errors);
+
 /// Lines of results.csv that are common to presses.
 std::vector<reports::Cell> row_of(const std::string& study, const std::string& scene, const std::string& model,
                                   const PressedOrgan& organ, double tick, reports::Cell position_error,

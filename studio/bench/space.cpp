@@ -12,6 +12,7 @@ namespace {
 /// One filling, and how far it is off the reference.
 struct Compared {
   PressedOrgan organ;
+  bool is_own = false;  ///< of the scene's own radius
   double position_error = 0, force_error = 0;
   bool feels = false, is_on_front = false;
 };
@@ -114,11 +115,17 @@ Result<BenchStudy> study_of(const loading::LoadedScene& own, bool is_quick, cons
   if (!reference) return reference.errors();
   Vec3Array rest;
   std::vector<Compared> fillings;
+  std::vector<std::string> too_coarse;
   std::vector<double> cost, errors;
   for (const int refinement : refinements) {
     Result<PressedOrgan> organ = pressed(refinement);
+    if (!organ && refinement < 0) {
+      too_coarse.push_back(left_out_sentence(own, std::pow(kRefinement, -refinement), organ.errors()));
+      advance();
+      continue;
+    }
     if (!organ) return organ.errors();
-    Compared f{*std::move(organ)};
+    Compared f{*std::move(organ), refinement == 0};
     // Finer fillings divide long triangles: the vertices of the first, the coarsest, are the first of all.
     for (std::size_t v = rest.size(); fillings.empty() && v < f.organ.run.position.front().size(); ++v)
       rest.push_back(own.organs[0].surface.vertex[v]);
@@ -139,7 +146,7 @@ Result<BenchStudy> study_of(const loading::LoadedScene& own, bool is_quick, cons
     if (f.is_on_front) study.points.rows.back().back() = std::string("front");
     if (why.empty() && f.feels)
       study.costs.push_back({name, "space", "r = " + output::short_number(1e3 * f.organ.radius, 3) + " mm",
-                             1e3 * percentile(f.organ.run.seconds, 0.5), f.force_error, &f - fillings.data() == 2});
+                             1e3 * percentile(f.organ.run.seconds, 0.5), f.force_error, f.is_own});
   }
   if (!why.empty()) study.left_out.push_back({name, "space", why});
   study.section.plots = {plot_of(fillings, false), plot_of(fillings, true)};
@@ -152,6 +159,7 @@ Result<BenchStudy> study_of(const loading::LoadedScene& own, bool is_quick, cons
           output::short_number(1e3 * reference->radius, 3) + " mm, " + std::to_string(kReferenceRefinements) +
           " refinements finer than the finest that is compared; orders are those of each row and the one above it.",
       study.sentences[0]};
+  for (const std::string& sentence : too_coarse) study.section.paragraphs.push_back(sentence);
   return study;
 }
 

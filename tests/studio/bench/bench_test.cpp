@@ -144,6 +144,27 @@ TEST(BenchCommand, SpendsAMillisecondOnTimeSpaceStructureAndPhase) {
   EXPECT_NE(slurp(folder.path() / "out/report.html").find("Where a millisecond buys most"), std::string::npos);
 }
 
+TEST(BenchCommand, LeavesOutSpheresThatAreTooCoarseForALayer) {
+  const TemporaryFolder folder;
+  const importers::RawMesh ball = fidelity::ball_mesh(30e-3, 6e-3);
+  std::ofstream(folder.path() / "ball.obj") << importers::to_obj(ball.vertex, ball.triangle);
+  std::ofstream(folder.path() / "ball.json") << R"({"format": "ctpm-scene", "version": 1, "name": "ball",
+    "organs": [{"name": "ball", "mesh": "ball.obj", "material": {"preset": "liver"},
+                "layers": [{"to_depth_mm": 20, "material": {"preset": "kidney"}}],
+                "fill": {"radius_mm": 3, "gap_mm": 3}, "anchors": [{"lowest_mm": 12}]}],
+    "tools": [{"name": "ball", "kind": "ball", "radius_mm": 8}]})";
+  const ProgramOutcome outcome = run_ctpm({"bench", "ball.json", "-o", "out", "--quick"}, folder.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string page = slurp(folder.path() / "out/report.html"), csv = slurp(folder.path() / "out/results.csv");
+  const std::string said = "mm are too coarse for this scene and left out: ";
+  const auto once = page.find(said);
+  ASSERT_NE(once, std::string::npos);
+  EXPECT_NE(page.find(said, once + 1), std::string::npos) << "in both studies";
+  EXPECT_NE(page.find("got 20 mm, which is deeper than the organ"), std::string::npos);
+  EXPECT_NE(csv.find("space,ball,ctpm,,,,3,"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("lattice phase,ball,ctpm,,,,3,"), std::string::npos) << csv;
+}
+
 TEST(BenchCommand, ComparesTheSamePlacesWhereFinerFillingsDivideTheSurface) {
   const TemporaryFolder folder;
   const std::string skin = std::string(CTPM_SOURCE_DIR) + "/scenes/skin.json";
