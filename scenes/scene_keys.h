@@ -360,8 +360,9 @@ void describe_fields(V& v, SolverSpec& solver) {
                "and of second, but a step that is too long for the motion is left to backward Euler (`record`, "
                "`bench` and `stability` count such ticks). `auto` takes the one with the least error for its time: "
                "`sdirk2`; `leapfrog` where it "
-               "is cheaper and nothing is cut; `backward-euler`, which damps, where tissue is stiff or hardly damps "
-               "what a cut leaves swinging. `ctpm plan` says which and why.",
+               "is cheaper, nothing is cut and nothing is under tension at rest; `backward-euler`, which damps, where "
+               "tissue "
+               "is stiff or hardly damps what a cut or that tension sets swinging. `ctpm plan` says which and why.",
                false},
            solver.integrator);
   v.number(Key{"tolerance", "Relative residual at which the solve of a tick stops.", false, "1e-4"}, solver.tolerance,

@@ -55,6 +55,18 @@ std::string with_milliseconds(const char* format, double seconds) {
   return text;
 }
 
+/// Whether elements are not as long at rest as they would like to be: once the tissue settles, light spheres swing.
+bool is_prestrained(const Model& model) {
+  constexpr double kLeast = 1e-3;  // of a length
+  const AxialElements& axial = model.axial;
+  for (std::size_t i = 0; i < axial.size(); ++i) {
+    const Vec3 along =
+        Vec3(model.rest_position[std::size_t(axial.b[i])]) - model.rest_position[std::size_t(axial.a[i])];
+    if (std::abs(norm(along) - axial.rest_length[i]) > kLeast * axial.rest_length[i]) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 double stable_step_bound(const Model& model) {
@@ -92,17 +104,18 @@ IntegratorChoice choose_integrator(const Model& model) {
   const double longest = stable_step_bound(model);
   const std::int32_t asked = model.solver.substeps;
   const double needed = std::max(std::ceil(model.tick / (kSafety * longest)), double(asked));
-  const bool has_blade = model.has_scalpel();
-  if (has_blade && model.has_softening && loss_rate(model) < kLeastLoss)
+  const bool swings = model.has_scalpel() || is_prestrained(model);
+  const std::string what = model.has_scalpel() ? "a cut leaves" : "tension at rest sets";
+  if (swings && model.has_softening && loss_rate(model) < kLeastLoss)
     return {Integrator::backward_euler, asked, true, true,
-            "softening gives energy to what a cut leaves swinging, and the tissue's own viscosity hardly damps it"};
-  if (!has_blade && needed <= std::max(kMostExplicitSubsteps, asked))
+            "softening gives energy to what " + what + " swinging, and the tissue's own viscosity hardly damps it"};
+  if (!swings && needed <= std::max(kMostExplicitSubsteps, asked))
     return {Integrator::leapfrog, std::int32_t(needed), true, true,
             with_milliseconds("nothing in the scene is too stiff for an explicit step of up to %.3g ms", longest)};
   if (needed <= std::max(kMostPredictedSubsteps, asked))
     return {Integrator::sdirk2, asked, true, true,
-            has_blade ? "a cut leaves light tissue that swings faster than a tick, which an explicit step never damps"
-                      : with_milliseconds("an implicit step costs less than explicit ones of up to %.3g ms", longest)};
+            swings ? what + " light tissue swinging faster than a tick, which an explicit step never damps"
+                   : with_milliseconds("an implicit step costs less than explicit ones of up to %.3g ms", longest)};
   return {Integrator::backward_euler, asked, true, true,
           with_milliseconds("the scene is stiff: an explicit step would have to be shorter than %.3g ms", longest)};
 }

@@ -34,10 +34,11 @@ struct IntegratorChoice {
 };
 
 /// Chooses by the Model alone, whatever integrator it names. Leapfrog where it is stable with so few substeps that they
-/// cost less than an implicit step, and no blade can cut: the spheres at an organ's boundary have next to no mass, and
-/// once a cut frees them, they swing faster than a tick. Else sdirk2, which is L-stable and of second order; backward
-/// Euler where the scene is too stiff for its predictor, or where a cut leaves tissue swinging to which softening
-/// (Eq. 8) gives energy and which its own viscosity hardly damps. Uses at least SolverSettings::substeps.
+/// cost less than an implicit step, no blade can cut, and nothing is under tension at rest: the spheres at an organ's
+/// boundary have next to no mass, and once a cut or that tension sets them swinging, they do so faster than a tick.
+/// Else sdirk2, which is L-stable and of second order; backward Euler where the scene is too stiff for its predictor,
+/// or where softening (Eq. 8) gives energy to what swings so and which its own viscosity hardly damps. Uses at least
+/// SolverSettings::substeps.
 IntegratorChoice choose_integrator(const Model& model);
 
 /// Checks whether the integrator and the substeps of the Model are stable for its stiffness.

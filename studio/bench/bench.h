@@ -80,10 +80,11 @@ Result<BenchStudy> run_bench_tiling(const BenchOptions& options, const BenchProg
 /// Writes report.html, results.json and results.csv into a folder.
 Result<Done> write_bench_report(const std::string& folder, const std::vector<BenchStudy>& studies);
 
-/// A motion of the hand from rest, for the studies in time and space.
+/// A motion of the hand, for the studies in time and space.
 struct BenchMotion {
   std::function<Inputs(std::int64_t tick)> hand;
   std::int64_t ticks = 0;
+  std::optional<State> start = {};  ///< where it begins; none: with all spheres at their rest positions
 };
 
 /// Positions, forces and computing time of each tick of a run.
@@ -97,8 +98,10 @@ struct BenchRun {
 };
 BenchRun run_motion(const Model& model, const BenchMotion& motion);
 
-/// Relative L2 error over the whole trajectory; position_error() compares displacements from rest.
-double position_error(const BenchRun& run, const BenchRun& reference, const Vec3Array& rest);
+/// Relative L2 error over the whole trajectory; position_error() compares displacements from `start`, each as much as
+/// its weight counts; empty: all alike.
+double position_error(const BenchRun& run, const BenchRun& reference, const Vec3Array& start,
+                      const std::vector<double>& weight = {});
 double force_error(const BenchRun& run, const BenchRun& reference);
 
 /// Whether the tool felt any force.

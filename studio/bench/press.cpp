@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "studio/loading/standing.h"
 #include "studio/output/number_text.h"
 
 namespace ctpm::bench {
@@ -28,10 +29,10 @@ Vec3Array surface_at(const Surface& surface, const Vec3Array& position) {
 
 }  // namespace
 
-BenchMotion press_surface(const Surface& surface, double ball_radius, double tick) {
+BenchMotion press_surface(const Vec3Array& vertices, double ball_radius, double tick) {
   constexpr double kDepth = 6e-3, kSpeed = 0.06;
-  const Vec3 top =
-      *std::max_element(surface.vertex.begin(), surface.vertex.end(), [](Vec3 a, Vec3 b) { return a.z < b.z; });
+  const auto highest = std::size_t(std::max_element(vertices.z.begin(), vertices.z.end()) - vertices.z.begin());
+  const Vec3 top = vertices[highest];
   BenchMotion motion;
   motion.ticks = std::llround(1.2 * kDepth / kSpeed / tick);
   motion.hand = [=](std::int64_t t) {
@@ -54,7 +55,11 @@ bool can_press(const loading::LoadedScene& scene) {
 Result<PressedOrgan> press_organ(const loading::LoadedScene& scene, const Model& model) {
   const Surface& surface = scene.organs[0].surface;
   const std::int32_t ball = first_ball(model);
-  BenchMotion motion = press_surface(surface, model.tools[std::size_t(ball)].radius, model.tick);
+  std::optional<loading::Standing> standing =
+      loading::settle_scene(model, std::llround(scene.scene.spec.settle / model.tick));
+  const Vec3Array start = surface_at(surface, standing->state.position);
+  BenchMotion motion = press_surface(start, model.tools[std::size_t(ball)].radius, model.tick);
+  motion.start = std::move(standing->state);
   motion.hand = [hand = motion.hand, ball](std::int64_t tick) {
     Inputs inputs = hand(tick);
     inputs.tool = ball;
@@ -65,7 +70,11 @@ Result<PressedOrgan> press_organ(const loading::LoadedScene& scene, const Model&
   PressedOrgan pressed{radius, organ.layer_count, organ.count, run_motion(model, motion)};
   if (pressed.run.status != stepping::StepStatus::ok)
     return Error{scene.path, "the press diverged at r = " + output::short_number(1e3 * radius) + " mm", ""};
-  for (Vec3Array& position : pressed.run.position) position = surface_at(surface, position);
+  // Fillings come to rest in shapes that differ a little: what is compared is what the press does.
+  for (Vec3Array& position : pressed.run.position) {
+    position = surface_at(surface, position);
+    for (std::size_t v = 0; v < position.size(); ++v) position.add(v, surface.vertex[v] - start[v]);
+  }
   return pressed;
 }
 

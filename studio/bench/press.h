@@ -12,8 +12,8 @@ namespace ctpm::bench {
 inline constexpr double kRefinement = 1.4142135623730951;
 inline constexpr int kReferenceRefinements = 2;
 
-/// The ball comes down on the highest point of the surface, 6 mm at 60 mm/s, and stays.
-BenchMotion press_surface(const Surface& surface, double ball_radius, double tick);
+/// The ball comes down on the highest vertex of a surface [m], 6 mm at 60 mm/s, and stays.
+BenchMotion press_surface(const Vec3Array& vertices, double ball_radius, double tick);
 
 /// A motion's processor time [s per simulated s].
 double run_time_of(const BenchRun& run, double tick);
@@ -22,7 +22,7 @@ double run_time_of(const BenchRun& run, double tick);
 struct PressedOrgan {
   double radius = 0;  ///< of its spheres [m]
   std::int64_t layers = 0, spheres = 0;
-  BenchRun run;  ///< its positions are those of the surface's vertices
+  BenchRun run;  ///< its positions: vertices of the surface at rest, moved as the press moves them
 };
 
 /// Whether the first organ of a scene can be filled anew and pressed: it has a mesh, and the scene has a ball.

@@ -29,7 +29,7 @@ std::vector<std::string> scenes_of(const BenchOptions& options) {
 BenchRun run_motion(const Model& model, const BenchMotion& motion) {
   BenchRun run;
   stepping::Stepper stepper(model);
-  State state = rest_state(model);
+  State state = motion.start ? *motion.start : rest_state(model);
   for (std::int64_t tick = 0; tick < motion.ticks; ++tick) {
     const Inputs inputs = motion.hand(tick);
     const double start = thread_seconds();
@@ -47,14 +47,16 @@ BenchRun run_motion(const Model& model, const BenchMotion& motion) {
   return run;
 }
 
-double position_error(const BenchRun& run, const BenchRun& reference, const Vec3Array& rest) {
+double position_error(const BenchRun& run, const BenchRun& reference, const Vec3Array& start,
+                      const std::vector<double>& weight) {
   double off = 0, size = 0;
   for (std::size_t t = 0; t < std::min(run.position.size(), reference.position.size()); ++t) {
-    CTPM_CHECK(rest.size() <= run.position[t].size() && rest.size() <= reference.position[t].size(),
+    CTPM_CHECK(start.size() <= run.position[t].size() && start.size() <= reference.position[t].size(),
                "places that are compared are in both runs");
-    for (std::size_t i = 0; i < rest.size(); ++i) {
-      const Vec3 apart = run.position[t][i] - reference.position[t][i], way = reference.position[t][i] - rest[i];
-      off += dot(apart, apart), size += dot(way, way);
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      const Vec3 apart = run.position[t][i] - reference.position[t][i], way = reference.position[t][i] - start[i];
+      const double counts = weight.empty() ? 1 : weight[i];
+      off += counts * dot(apart, apart), size += counts * dot(way, way);
     }
   }
   return size > 0 ? std::sqrt(off / size) : 0;

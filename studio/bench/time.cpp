@@ -8,6 +8,8 @@
 
 #include "core/stepping/step.h"
 #include "studio/bench/bench.h"
+#include "studio/bench/motions.h"
+#include "studio/loading/standing.h"
 #include "studio/output/number_text.h"
 
 namespace ctpm::bench {
@@ -29,7 +31,7 @@ constexpr std::size_t kTimedTicks = 1000;
 constexpr double kMostGap = 0.05;
 
 struct TimeJob {
-  std::string title;
+  std::string title, scene;
   std::string organ;  ///< whose own filling it has; empty if another
   Model model;
   BenchMotion motion;
@@ -68,76 +70,6 @@ Model with_setting(Model model, const Setting& setting) {
   return model;
 }
 
-/// The highest sphere that is free to move.
-std::size_t top_of(const Model& model) {
-  std::size_t top = 0;
-  for (std::size_t i = 0; i < model.sphere_count(); ++i)
-    if (model.held_axes[i] == 0 && (model.held_axes[top] != 0 || model.rest_position.z[i] > model.rest_position.z[top]))
-      top = i;
-  return top;
-}
-
-/// The tool goes down by `depth` [m] from `start` at 100 mm/s, stays, and leaves.
-BenchMotion press_and_release(const Model& model, std::int32_t tool, Vec3 start, double depth) {
-  constexpr double kSpeed = 0.1;
-  const double in = depth / kSpeed, hold = 0.02, tick = model.tick;
-  BenchMotion motion;
-  motion.ticks = std::llround((2 * in + 1.5 * hold) / tick);
-  motion.hand = [=](std::int64_t t) {
-    const double time = double(t + 1) * tick;
-    const double gone = time < in ? kSpeed * time : std::min(depth, depth - kSpeed * (time - in - hold));
-    Inputs inputs;
-    inputs.tool = tool, inputs.position = start - Vec3{0, 0, gone};
-    return inputs;
-  };
-  return motion;
-}
-
-/// The scene's first ball presses 6 mm deep from where it touches the highest place of the drawn surface, or where
-/// there is none, the highest free sphere.
-BenchMotion press_the_top(const Model& model, std::int32_t ball) {
-  const std::size_t top = top_of(model);
-  Vec3 place = model.rest_position[top] + Vec3{0, 0, model.contact_radius[top]};
-  if (!model.surfaces.empty() && !model.surfaces[0].vertex.empty())
-    place = *std::max_element(model.surfaces[0].vertex.begin(), model.surfaces[0].vertex.end(),
-                              [](Vec3 p, Vec3 q) { return p.z < q.z; });
-  return press_and_release(model, ball, place + Vec3{0, 0, model.tools[std::size_t(ball)].radius}, 6e-3);
-}
-
-/// A pin, added to `model`, moves the highest free sphere as the ball would, without contact.
-BenchMotion move_the_top(Model& model) {
-  const std::size_t top = top_of(model);
-  model.tools.push_back({"pin", ToolKind::pin, 0, 0, std::int32_t(top)});
-  return press_and_release(model, std::int32_t(model.tools.size()) - 1, model.rest_position[top], 6e-3);
-}
-
-/// The ball goes between the shipped liver and the kidney behind it, and presses both.
-BenchMotion press_between(const Model& model, std::int32_t ball) {
-  return press_and_release(model, ball, {-0.045, 0.086, 0.075}, 21e-3);
-}
-
-/// The scene's first scalpel goes along x through the middle of the organ's upper half, at 400 mm/s.
-BenchMotion cut_along_x(const Model& model, std::int32_t scalpel) {
-  constexpr double kSpeed = 0.4;
-  const Vec3Array& p = model.rest_position;
-  const auto [left, right] = std::minmax_element(p.x.begin(), p.x.end());
-  const auto [low, high] = std::minmax_element(p.z.begin(), p.z.end());
-  const double spacing = model.organs[0].spacing;
-  // Between two layers of spheres, where no sphere's centre is.
-  const Vec3 from{*left - spacing, p.y[p.size() / 2] + 0.5 * spacing, *low + 0.55 * (*high - *low)};
-  const double way = *right - *left + 2 * spacing, tick = model.tick;
-  BenchMotion motion;
-  motion.ticks = std::llround(way / kSpeed / tick) + 20;
-  motion.hand = [=](std::int64_t t) {
-    Inputs inputs;
-    const double gone = kSpeed * double(t) * tick;
-    if (gone > way) return inputs;
-    inputs.tool = scalpel, inputs.position = from + Vec3{gone, 0, 0};
-    return inputs;
-  };
-  return motion;
-}
-
 std::int32_t first_tool(const Model& model, ToolKind kind) {
   const auto it = std::find_if(model.tools.begin(), model.tools.end(), [&](const Tool& t) { return t.kind == kind; });
   return it == model.tools.end() ? -1 : std::int32_t(it - model.tools.begin());
@@ -146,10 +78,10 @@ std::int32_t first_tool(const Model& model, ToolKind kind) {
 /// A motion, and the kind of tool that a scene must have for it.
 struct Deed {
   ToolKind kind;
-  std::function<BenchMotion(const Model&, std::int32_t tool)> motion;
+  std::function<BenchMotion(const Model&, std::int32_t tool, const State& start)> motion;
 };
 
-/// Without gravity, so that every run starts from the same State.
+/// Without gravity. Every run starts from the State in which the organs have come to rest under their own tension.
 Result<TimeJob> make_job(const std::string& path, const std::string& title, const Deed& deed,
                          const std::function<void(scenes::SceneSpec&)>& change, const BenchOptions& options = {}) {
   const auto prepare = [&](scenes::SceneSpec& spec) {
@@ -159,12 +91,15 @@ Result<TimeJob> make_job(const std::string& path, const std::string& title, cons
   const Result<loading::LoadedScene> scene = loading::load_whole_scene(path, {}, prepare);
   if (!scene) return scene.errors();
   if (options.take_warnings) options.take_warnings(scene->scene.warnings);
-  TimeJob job{title, "", scene->built.model, {}, deed.kind == ToolKind::ball};
+  TimeJob job{title, scene->scene.spec.name, "", scene->built.model, {}, deed.kind == ToolKind::ball};
   const std::int32_t tool = first_tool(job.model, deed.kind);
   if (tool < 0)
     return Error{path, std::string("has no ") + (deed.kind == ToolKind::scalpel ? "scalpel" : "ball"),
                  "add one to its tools"};
-  job.motion = deed.motion(job.model, tool);
+  std::optional<loading::Standing> standing =
+      loading::settle_scene(job.model, std::llround(scene->scene.spec.settle / job.model.tick));
+  job.motion = deed.motion(job.model, tool, standing->state);
+  job.motion.start = std::move(standing->state);
   return job;
 }
 
@@ -179,10 +114,11 @@ Result<std::vector<TimeJob>> make_jobs(const BenchOptions& options) {
   const auto shipped = [&](const char* name) { return options.shipped + "/" + name + ".json"; };
   const std::string liver = shipped("liver"), title = "liver, press and release";
   for (const std::string& path : scenes_of(options)) {
-    const std::string name = options.scenes.empty() ? "liver" : path;
     made.push_back(make_job(
-        path, name + ", press and release", press, [](scenes::SceneSpec&) {}, options));
-    if (made.back()) made.back()->organ = made.back()->model.organs[0].name;
+        path, title, press, [](scenes::SceneSpec&) {}, options));
+    if (!made.back()) continue;
+    made.back()->organ = made.back()->model.organs[0].name;
+    if (!options.scenes.empty()) made.back()->title = made.back()->scene + ", press and release";
   }
   if (options.scenes.empty()) {
     if (!options.is_quick) {
@@ -225,7 +161,7 @@ std::vector<Setting> settings_for(const Model& model, bool is_quick) {
 
 Point measure(const TimeJob& job, const Setting& setting, const BenchRun& run, const BenchRun& reference) {
   Point point{setting};
-  point.position_error = position_error(run, reference, job.model.rest_position);
+  point.position_error = position_error(run, reference, job.motion.start->position, job.model.mass);
   point.force_error = force_error(run, reference);
   point.feels = feels(run);
   double total = 0;
@@ -339,14 +275,15 @@ reports::Table orders(const std::vector<Point>& points, Gap gap) {
 /// Order of SDIRK2 in position where a pin moves what the ball presses, between 2 and 4 substeps.
 double order_without_contact(const TimeJob& job, std::int32_t fine) {
   Model model = job.model;
-  const BenchMotion motion = move_the_top(model);
+  BenchMotion motion = move_the_top(model, *job.motion.start);
+  motion.start = job.motion.start;
   const auto run = [&](std::int32_t substeps) {
     const Setting setting{Integrator::sdirk2, substeps, kReferenceTolerance};
     return run_motion(with_setting(model, setting), motion);
   };
   const BenchRun reference = run(fine);
   const auto error = [&](std::int32_t substeps) {
-    return position_error(run(substeps), reference, model.rest_position);
+    return position_error(run(substeps), reference, motion.start->position, model.mass);
   };
   return std::log2(error(2) / error(4));
 }
@@ -401,18 +338,18 @@ void add_costs(const TimeJob& job, const std::vector<Point>& points, BenchStudy&
 
 /// What the study's section says before its numbers.
 std::vector<std::string> words_of(const TimeJob& job, std::int32_t fine, Gap gap) {
-  return {
-      std::to_string(job.model.sphere_count()) +
-          " spheres of r = " + output::short_number(1e3 * job.model.organs[0].sphere_radius, 3) + " mm, " +
-          std::to_string(job.motion.ticks) + " ticks of " + output::short_number(1e3 * job.model.tick) +
-          " ms, no gravity. Errors are relative differences in L2 over the whole trajectory, of displacements and of "
-          "the force on the tool, from a reference: sdirk2 with " +
-          std::to_string(fine) + " substeps and tolerance " + output::short_number(kReferenceTolerance) +
-          ", two refinements finer than the finest implicit setting. It differs from the run with half as many "
-          "substeps by " +
-          percent(gap.position) + " in position and " + percent(gap.force) +
-          " in force: an estimate of its own error, not a bound. Errors below that are not told apart.",
-      "Numbers in the legend are tolerances; along a line the substeps double."};
+  return {std::to_string(job.model.sphere_count()) +
+              " spheres of r = " + output::short_number(1e3 * job.model.organs[0].sphere_radius, 3) + " mm, " +
+              std::to_string(job.motion.ticks) + " ticks of " + output::short_number(1e3 * job.model.tick) +
+              " ms, no gravity, from where the organs have come to rest. Errors are relative differences in L2 over "
+              "the whole trajectory, of displacements and of "
+              "the force on the tool, from a reference: sdirk2 with " +
+              std::to_string(fine) + " substeps and tolerance " + output::short_number(kReferenceTolerance) +
+              ", two refinements finer than the finest implicit setting. It differs from the run with half as many "
+              "substeps by " +
+              percent(gap.position) + " in position and " + percent(gap.force) +
+              " in force: an estimate of its own error, not a bound. Errors below that are not told apart.",
+          "Numbers in the legend are tolerances; along a line the substeps double."};
 }
 
 std::vector<reports::Cell> row_of(const TimeJob& job, const Point& p) {
@@ -444,7 +381,8 @@ std::pair<BenchRun, Gap> make_reference(const TimeJob& job, std::int32_t fine) {
   std::future<BenchRun> other = std::async(std::launch::async, [&] { return run(fine / 2); });
   BenchRun reference = run(fine);
   const BenchRun halved = other.get();
-  const Gap gap{position_error(halved, reference, job.model.rest_position), force_error(halved, reference)};
+  const Gap gap{position_error(halved, reference, job.motion.start->position, job.model.mass),
+                force_error(halved, reference)};
   return {std::move(reference), gap};
 }
 

@@ -285,6 +285,15 @@ TEST(Automatic, DampsWhatACutLeavesSwinging) {
   EXPECT_NE(stepping::choose_integrator(slow).integrator, Integrator::backward_euler);
 }
 
+TEST(Automatic, DampsWhatPrestrainSetsSwinging) {
+  network::Material material = liver_material();
+  material.viscosity = 5e3, material.stiffness_scale = 0.3, material.prestrain = 0.05;
+  const stepping::IntegratorChoice choice =
+      stepping::choose_integrator(make_block_model(4, 4, 4, network::Structure::ctpm, material));
+  EXPECT_EQ(choice.integrator, Integrator::sdirk2);
+  EXPECT_NE(choice.reason.find("tension at rest"), std::string::npos) << choice.reason;
+}
+
 /// Largest kinetic energy of a corner's sphere from 0.2 to 0.25 s after it was struck, as a part of what it got.
 double part_that_swings(Model model) {
   State state = rest_state(model);

@@ -11,6 +11,7 @@
 
 #include "importers/mesh.h"
 #include "studio/bench/bench.h"
+#include "studio/bench/press.h"
 #include "studio/fidelity/meshes.h"
 #include "tests/studio/commands/run_program.h"
 
@@ -101,6 +102,41 @@ TEST(Bench, ErrorsAreRelativeToHowFarItMovesAndHowHardItPushes) {
   EXPECT_EQ(bench::position_error(reference, reference, rest), 0);
   EXPECT_NEAR(bench::position_error(off, reference, rest), std::sqrt(10 * 1e-6 / squares), 1e-12);
   EXPECT_NEAR(bench::force_error(off, reference), 0.1 / 2, 1e-12);
+}
+
+TEST(Bench, AnErrorInPositionCountsSpheresByTheirWeights) {
+  bench::BenchRun reference, off;
+  Vec3Array start, moved, wrong;
+  for (int i = 0; i < 2; ++i) start.push_back({0.1 * i, 0, 0}), moved.push_back({0.1 * i, 0, 1});
+  wrong = moved;
+  wrong.set(1, {0.1, 0, 3});
+  reference.position = {moved}, off.position = {wrong};
+  EXPECT_NEAR(bench::position_error(off, reference, start), std::sqrt(4.0 / 2), 1e-12);
+  EXPECT_NEAR(bench::position_error(off, reference, start, {3, 1}), std::sqrt(4.0 / 4), 1e-12);
+  EXPECT_EQ(bench::position_error(off, reference, start, {1, 0}), 0) << "a sphere without mass";
+}
+
+TEST(Bench, APrestrainedOrganIsPressedFromWhereItHasComeToRest) {
+  const TemporaryFolder folder;
+  const importers::RawMesh ball = fidelity::ball_mesh(30e-3, 6e-3);
+  std::ofstream(folder.path() / "ball.obj") << importers::to_obj(ball.vertex, ball.triangle);
+  std::ofstream(folder.path() / "ball.json") << R"({"format": "ctpm-scene", "version": 1, "name": "ball",
+    "organs": [{"name": "ball", "mesh": "ball.obj", "material": {"preset": "liver", "prestrain": 0.1},
+                "fill": {"radius_mm": 4, "gap_mm": 4}, "anchors": [{"lowest_mm": 12}]}],
+    "tools": [{"name": "ball", "kind": "ball", "radius_mm": 8}]})";
+  const auto scene = loading::load_whole_scene((folder.path() / "ball.json").string());
+  ASSERT_TRUE(scene);
+  const auto pressed = bench::press_organ(*scene, scene->built.model);
+  ASSERT_TRUE(pressed);
+  const Surface& surface = scene->organs[0].surface;
+  double begins = 0, ends = 0;
+  for (std::size_t v = 0; v < surface.vertex.size(); ++v) {
+    begins = std::max(begins, norm(pressed->run.position.front()[v] - surface.vertex[v]));
+    ends = std::max(ends, norm(pressed->run.position.back()[v] - surface.vertex[v]));
+  }
+  EXPECT_LT(begins, 0.2e-3) << "in the first tick the ball comes down by 0.06 mm";
+  EXPECT_GT(ends, 4e-3);
+  EXPECT_GT(norm(pressed->run.force.front()), 0) << "it begins at the surface that has drawn together";
 }
 
 TEST(BenchCommand, ShowsErrorAgainstRunTimeOfAScene) {
