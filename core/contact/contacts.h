@@ -7,6 +7,7 @@
 
 #include "core/contact/ball_contact.h"
 #include "core/contact/blade_force.h"
+#include "core/contact/blade_wedge.h"
 #include "core/contact/body_contact.h"
 #include "core/contact/cut_face_contact.h"
 #include "core/contact/cut_surfaces.h"
@@ -94,6 +95,7 @@ class Contacts {
   BodyContact body_contact_;
   ObstacleContact obstacles_;
   BladeForce blade_;
+  BladeWedge wedge_;
   CutFaceContact cut_faces_;
   PointContacts points_;
   ExplicitSolve explicit_solve_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/cutting/cutting.h"
+#include "core/cutting/opening.h"
 #include "core/cutting/rest_map.h"
 #include "core/cutting/swept_surface.h"
 #include "core/cutting/tissue_depth.h"
@@ -52,6 +53,15 @@ class CutFront {
   /// edge, and friction of the flanks.
   double hold(std::size_t node, const Tool& scalpel, const StateView& state, Vec3 edge, Vec3 way) const;
 
+  /// Place at rest of a node's front, in the substep.
+  Vec3 rest(std::size_t node) const { return front_[node]; }
+
+  /// How far a place at rest in an organ is in tissue and in a cut: 1 where it is, falling to 0 within `shallow` [m]
+  /// around the organ's surface, and between kInCut and SweptIndex::kFar from the swept surface.
+  double in_cut(std::size_t organ, Vec3 rest, double shallow) const;
+
+  const Openings& openings() const { return openings_; }
+
   /// Draws the front after the edge at the end of a substep. What it sweeps is added to the swept surface, and elements
   /// that it crosses are severed; they are appended to `crossings`. Returns the number of severed elements, constraints
   /// and angle springs.
@@ -81,6 +91,7 @@ class CutFront {
   TissueDepth depth_;
   SweptIndex swept_;
   RestElements elements_;
+  Openings openings_;
   bool resists_ = false;
   std::vector<Material> material_;        ///< (sphere_count, or empty)
   std::vector<std::uint8_t> has_volume_;  ///< of each organ: it has a surface or lattice cells, and so an inside

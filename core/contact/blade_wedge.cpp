@@ -1,0 +1,112 @@
+#include "core/contact/blade_wedge.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ctpm::contact {
+namespace {
+
+/// Pressure of the springs per closing of the faces, in moduli of the tissue per spacing (our choice): so stiff that
+/// the tissue closes the blade's width by some percent, and not so stiff that the solve suffers.
+constexpr double kStiffness = 10;
+
+/// The flanks begin within this around an organ's surface, or within the distance of two nodes where that is more, up
+/// to what the depth below the surface knows [m].
+constexpr double kShallowest = 1e-3, kDeepest = 4e-3;
+
+/// Half of the way over which a change along the flanks is measured [m].
+constexpr double kNudge = 0.05e-3;
+
+}  // namespace
+
+double local_thickness(const Tool& scalpel, double behind) {
+  return std::min(scalpel.blade_thickness, behind / kBevel);
+}
+
+/// What of the flanks a node of the edge stands for.
+struct BladeWedge::Flank {
+  std::size_t organ;
+  const Tool& tool;
+  Vec3 up, back;                ///< along the edge and across it on the flanks, unit vectors in the world
+  Vec3 rest{};                  ///< where the tissue at rest is that is at the edge [m]
+  Vec3 rest_up{}, rest_back{};  ///< moves at rest that move the place by `up` and `back`
+  Vec3 normal{};                ///< of the flanks at rest, unit vector
+  double height = 0;            ///< of the flanks [m]
+  double along = 0;             ///< from the tip [m]
+  double apart = 0;             ///< of nodes [m]
+  double width = 0;             ///< of the flanks' strip at rest [m]
+};
+
+/// Adds the contact of one place on the flanks; returns its force on the tissue along them [N].
+Vec3 BladeWedge::press(const StateView& state, const cutting::CutFront& front, const Flank& flank, std::size_t row,
+                       double h, bool is_predicted, PointContacts& contacts) const {
+  const double behind = (double(row) + 0.5) / kRows * flank.height;
+  // The point is ground at 45 degrees.
+  const double ground = std::clamp((flank.along - behind) / flank.apart + 0.5, 0.0, 1.0);
+  const Vec3 rest = flank.rest + behind * flank.rest_back;
+  const double shallow = std::clamp(flank.apart, kShallowest, kDeepest);
+  const double in_cut = ground > 0 ? front.in_cut(flank.organ, rest, shallow) : 0.0;
+  if (!(in_cut > 0)) return {};
+  cutting::Opening opening;
+  front.openings().find(flank.organ, rest, flank.normal, opening);
+  if (!(opening.whole > 0)) return {};
+  const Vec3 across = cross(flank.up, flank.back);
+  const auto count = std::size_t(opening.count);
+  const Carriers carriers{{opening.sphere.data(), count}, {opening.weight.data(), count}};
+  const double closed = local_thickness(flank.tool, behind) - opening.width(state.position, across);
+  const double expected = is_predicted ? closed : closed - h * dot(across, weighted(carriers, state.velocity));
+  if (!(expected > 0)) return {};
+  const OrganRange& organ = model_.organs[flank.organ];
+  const double whole =
+      kStiffness * organ.modulus / organ.spacing * ground * opening.whole * flank.width * flank.height / kRows;
+  const double k = in_cut * whole;
+  contacts.add({.axis = across, .force = k * closed * across, .k = k, .only_pushes = true}, carriers);
+
+  // What the energy k / 2 closed^2 changes by while the blade moves along its flanks.
+  const Vec3 change = opening.change(state.position, across);
+  const auto force_along = [&](Vec3 at_rest) {
+    double more_k = 0;
+    if (in_cut < 1)
+      more_k = whole *
+               (front.in_cut(flank.organ, rest + kNudge * at_rest, shallow) -
+                front.in_cut(flank.organ, rest - kNudge * at_rest, shallow)) /
+               (2 * kNudge);
+    return 0.5 * more_k * expected * expected - k * expected * dot(change, at_rest);
+  };
+  return force_along(flank.rest_up) * flank.up + force_along(flank.rest_back) * flank.back;
+}
+
+void BladeWedge::find(const StateView& state, const Tool& tool, const cutting::CutFront& front,
+                      const cutting::BladeEdge& edge, double h, bool is_predicted, std::size_t hand,
+                      PointContacts& contacts) const {
+  const double length = norm(edge.heel - edge.tip);
+  const Vec3 up = (edge.heel - edge.tip) / length, point = edge.back - edge.tip;
+  const Vec3 behind = point - dot(point, up) * up;
+  const double height = norm(behind);
+  if (!(height > 0)) return;
+  const double apart = length / double(kEdgeNodes - 1 - cutting::kPointNodes);
+  for (std::size_t n = cutting::kPointNodes; n < kEdgeNodes; ++n) {
+    const cutting::CutFront::Node& node = front.nodes()[n];
+    if (node.organ < 0 || node.place.count == 0) continue;
+    const Vec3 to_edge = at_node(edge, n) - node.place.at(state.position);
+    Flank flank{std::size_t(node.organ), tool, up, behind / height};
+    flank.height = height;
+    flank.rest = front.rest(n) + node.place.at_rest(state.position, to_edge);
+    flank.rest_up = node.place.at_rest(state.position, flank.up);
+    flank.rest_back = node.place.at_rest(state.position, flank.back);
+    flank.normal = cross(flank.rest_up, flank.rest_back);
+    const double size = norm(flank.normal);
+    if (!(size > 0)) continue;
+    flank.normal = flank.normal / size;
+    flank.along = double(n - cutting::kPointNodes) * apart, flank.apart = apart;
+    flank.width = norm(flank.rest_up) * apart * (n == cutting::kPointNodes || n + 1 == kEdgeNodes ? 0.5 : 1.0);
+    Vec3 along;
+    for (std::size_t row = 0; row < kRows; ++row) along += press(state, front, flank, row, h, is_predicted, contacts);
+    if (along == Vec3{}) continue;
+    const auto count = std::size_t(node.place.count);
+    contacts.add({.axis = up, .force = along, .hand = std::int32_t(hand)},
+                 {{node.place.sphere.data(), count}, {node.place.weight.data(), count}});
+  }
+}
+
+}  // namespace ctpm::contact

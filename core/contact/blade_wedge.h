@@ -1,0 +1,47 @@
+#pragma once
+
+#include "core/contact/point_contact.h"
+#include "core/cutting/cut_front.h"
+#include "core/model/state_view.h"
+
+namespace ctpm::contact {
+
+/// How thick a blade is so far behind its edge [m]: nothing at the edge, then a bevel with straight sides that is
+/// kBevel times as high as the blade is thick, a wedge of 23 degrees (estimate), then Tool::blade_thickness.
+double local_thickness(const Tool& scalpel, double behind);
+inline constexpr double kBevel = 2.5;
+
+/// The wedge that a blade is. Where it stands in a cut, the two faces of the cut stay apart by the blade's local
+/// thickness: at places on its flanks, one row of them behind each node of the edge, a spring pushes the faces apart
+/// where their opening (cutting::Opening) is less. What pushes them apart are opposite forces on the spheres of both
+/// sides; the blade may lie anywhere between the faces.
+///
+/// The energy of the springs depends on the tissue and on where in it the blade is. The blade feels the change with the
+/// latter: faces that open along its way hold it back, and faces that close behind it push it on. So it pays for what
+/// it opens, and gets it back where the tissue is elastic. The blade has no stiffness across its flanks.
+class BladeWedge {
+ public:
+  explicit BladeWedge(const Model& model) : model_(model) {}
+
+  /// Capacity that find() needs: contacts, and entries of their carriers.
+  std::size_t capacity() const { return model_.cut_resistance.any() ? kEdgeNodes * (kRows + 1) : 0; }
+  std::size_t entries() const {
+    return model_.cut_resistance.any() ? kEdgeNodes * (kRows * cutting::Opening::kMost + cutting::Place::kMost) : 0;
+  }
+
+  /// Adds the contacts of the flanks of the blade in a hand with the cut that they are in. The arguments are those of
+  /// BladeForce::find().
+  void find(const StateView& state, const Tool& tool, const cutting::CutFront& front, const cutting::BladeEdge& edge,
+            double h, bool is_predicted, std::size_t hand, PointContacts& contacts) const;
+
+  static constexpr std::size_t kRows = 3;  ///< of places on the flanks
+
+ private:
+  struct Flank;
+  Vec3 press(const StateView& state, const cutting::CutFront& front, const Flank& flank, std::size_t row, double h,
+             bool is_predicted, PointContacts& contacts) const;
+
+  const Model& model_;
+};
+
+}  // namespace ctpm::contact
