@@ -8,7 +8,7 @@ namespace {
 
 /// Pressure of the springs per closing of the faces, in moduli of the tissue per spacing (our choice): so stiff that
 /// the tissue closes the blade's width by some percent, and not so stiff that the solve suffers.
-constexpr double kStiffness = 10;
+constexpr double kStiffness = 40;
 
 /// The flanks begin within this around an organ's surface, or within the distance of two nodes where that is more, up
 /// to what the depth below the surface knows [m].
@@ -20,7 +20,7 @@ constexpr double kNudge = 0.05e-3;
 }  // namespace
 
 double local_thickness(const Tool& scalpel, double behind) {
-  return std::min(scalpel.blade_thickness, behind / kBevel);
+  return std::min(scalpel.blade_thickness, std::max(0.0, behind / kBevel));
 }
 
 /// What of the flanks a node of the edge stands for.
@@ -40,38 +40,42 @@ struct BladeWedge::Flank {
 /// Adds the contact of one place on the flanks; returns its force on the tissue along them [N].
 Vec3 BladeWedge::press(const StateView& state, const cutting::CutFront& front, const Flank& flank, std::size_t row,
                        double h, bool is_predicted, PointContacts& contacts) const {
+  const OrganRange& organ = model_.organs[flank.organ];
   const double behind = (double(row) + 0.5) / kRows * flank.height;
   // The point is ground at 45 degrees.
-  const double ground = std::clamp((flank.along - behind) / flank.apart + 0.5, 0.0, 1.0);
+  const auto resolved = [&](double distance) { return std::clamp(2 * distance / organ.spacing, 0.0, 1.0); };
+  const double share = resolved(behind) * resolved(flank.along - behind);
   const Vec3 rest = flank.rest + behind * flank.rest_back;
   const double shallow = std::clamp(flank.apart, kShallowest, kDeepest);
-  const double in_cut = ground > 0 ? front.in_cut(flank.organ, rest, shallow) : 0.0;
+  const double in_cut = share > 0 ? front.in_cut(flank.organ, rest, shallow) : 0.0;
   if (!(in_cut > 0)) return {};
   cutting::Opening opening;
   front.openings().find(flank.organ, rest, flank.normal, opening);
   if (!(opening.whole > 0)) return {};
   const Vec3 across = cross(flank.up, flank.back);
   const auto count = std::size_t(opening.count);
+  cutting::Opening::Values off_cut;
+  for (std::size_t i = 0; i < count; ++i)
+    off_cut[i] = dot(across, state.position[std::size_t(opening.sphere[i])]) - opening.apart[i];
   const Carriers carriers{{opening.sphere.data(), count}, {opening.weight.data(), count}};
-  const double closed = local_thickness(flank.tool, behind) - opening.width(state.position, across);
+  const double closed = local_thickness(flank.tool, behind) - opening.jump(off_cut);
   const double expected = is_predicted ? closed : closed - h * dot(across, weighted(carriers, state.velocity));
   if (!(expected > 0)) return {};
-  const OrganRange& organ = model_.organs[flank.organ];
   const double whole =
-      kStiffness * organ.modulus / organ.spacing * ground * opening.whole * flank.width * flank.height / kRows;
+      kStiffness * organ.modulus / organ.spacing * share * opening.whole * flank.width * flank.height / kRows;
   const double k = in_cut * whole;
   contacts.add({.axis = across, .force = k * closed * across, .k = k, .only_pushes = true}, carriers);
 
   // What the energy k / 2 closed^2 changes by while the blade moves along its flanks.
-  const Vec3 change = opening.change(state.position, across);
-  const auto force_along = [&](Vec3 at_rest) {
+  const Vec3 change = opening.change(off_cut);
+  const auto force_along = [&](Vec3 move) {
     double more_k = 0;
     if (in_cut < 1)
       more_k = whole *
-               (front.in_cut(flank.organ, rest + kNudge * at_rest, shallow) -
-                front.in_cut(flank.organ, rest - kNudge * at_rest, shallow)) /
+               (front.in_cut(flank.organ, rest + kNudge * move, shallow) -
+                front.in_cut(flank.organ, rest - kNudge * move, shallow)) /
                (2 * kNudge);
-    return 0.5 * more_k * expected * expected - k * expected * dot(change, at_rest);
+    return 0.5 * more_k * expected * expected - k * expected * dot(change, move);
   };
   return force_along(flank.rest_up) * flank.up + force_along(flank.rest_back) * flank.back;
 }

@@ -51,7 +51,7 @@ void Openings::find(std::size_t organ, Vec3 rest, Vec3 normal, Opening& o) const
     const double share =
         model_.mass[std::size_t(sphere)] / heaviest_[organ] * std::min(1.0, std::abs(apart) / (kOnPlane * spacing));
     const std::size_t side = apart > 0;
-    o.sphere[count] = sphere, o.apart_[count] = apart;
+    o.sphere[count] = sphere, o.apart[count] = apart;
     o.kernel_[count] = share * bump * bump * bump, o.pull_[count] = share * 6 * bump * bump / (reach * reach);
     o.along_[count] = {dot(o.axis_[0], from), dot(o.axis_[1], from)};
     o.total_[side] += o.kernel_[count];
@@ -68,7 +68,7 @@ void Openings::find(std::size_t organ, Vec3 rest, Vec3 normal, Opening& o) const
   // The slopes along the cut, which both sides share.
   double xx = kStiffness * spacing * spacing, yy = xx, xy = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    Opening::Pair &along = o.along_[i], mean = o.mean_[std::size_t(o.apart_[i] > 0)];
+    Opening::Pair &along = o.along_[i], mean = o.mean_[std::size_t(o.apart[i] > 0)];
     along.first -= mean.first, along.second -= mean.second;
     xx += o.kernel_[i] * along.first * along.first, xy += o.kernel_[i] * along.first * along.second;
     yy += o.kernel_[i] * along.second * along.second;
@@ -78,40 +78,36 @@ void Openings::find(std::size_t organ, Vec3 rest, Vec3 normal, Opening& o) const
   const double dx = o.mean_[1].first - o.mean_[0].first, dy = o.mean_[1].second - o.mean_[0].second;
   const double qx = o.xx_ * dx + o.xy_ * dy, qy = o.xy_ * dx + o.yy_ * dy;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t side = o.apart_[i] > 0;
+    const std::size_t side = o.apart[i] > 0;
     const double mean = (side == 1 ? 1 : -1) / o.total_[side];
     o.weight[i] = o.kernel_[i] * (mean - o.along_[i].first * qx - o.along_[i].second * qy);
   }
 }
 
-double Opening::width(const Vec3Array& position, Vec3 across) const {
+double Opening::jump(const Values& value) const {
   double sum = 0;
-  for (std::size_t i = 0; i < std::size_t(count); ++i)
-    sum += weight[i] * (dot(across, position[std::size_t(sphere[i])]) - apart_[i]);
+  for (std::size_t i = 0; i < std::size_t(count); ++i) sum += weight[i] * value[i];
   return sum;
 }
 
 /// Of the fit by weighted least squares only the weights change with the place, and what they change is what the fit
 /// leaves over.
-Vec3 Opening::change(const Vec3Array& position, Vec3 across) const {
-  std::array<double, kMost> moved;
+Vec3 Opening::change(const Values& value) const {
   double mean[2] = {}, x = 0, y = 0;
+  for (std::size_t i = 0; i < std::size_t(count); ++i)
+    mean[apart[i] > 0] += kernel_[i] / total_[apart[i] > 0] * value[i];
   for (std::size_t i = 0; i < std::size_t(count); ++i) {
-    moved[i] = dot(across, position[std::size_t(sphere[i])]) - apart_[i];
-    mean[apart_[i] > 0] += kernel_[i] / total_[apart_[i] > 0] * moved[i];
-  }
-  for (std::size_t i = 0; i < std::size_t(count); ++i) {
-    moved[i] -= mean[apart_[i] > 0];
-    x += kernel_[i] * along_[i].first * moved[i], y += kernel_[i] * along_[i].second * moved[i];
+    const double off = kernel_[i] * (value[i] - mean[apart[i] > 0]);
+    x += off * along_[i].first, y += off * along_[i].second;
   }
   const double slope_x = xx_ * x + xy_ * y, slope_y = xy_ * x + yy_ * y;
   Pair sum;
   for (std::size_t i = 0; i < std::size_t(count); ++i) {
-    const double left = moved[i] - slope_x * along_[i].first - slope_y * along_[i].second;
+    const std::size_t side = apart[i] > 0;
+    const double left = value[i] - mean[side] - slope_x * along_[i].first - slope_y * along_[i].second;
     const double pull = kernel_[i] > 0 ? pull_[i] * weight[i] / kernel_[i] * left : 0.0;
-    const Pair mean_of_side = mean_[std::size_t(apart_[i] > 0)];
-    sum.first += pull * (along_[i].first + mean_of_side.first);
-    sum.second += pull * (along_[i].second + mean_of_side.second);
+    sum.first += pull * (along_[i].first + mean_[side].first);
+    sum.second += pull * (along_[i].second + mean_[side].second);
   }
   return sum.first * axis_[0] + sum.second * axis_[1];
 }

@@ -68,7 +68,8 @@ void cut(const Model& model, BladeResult::Row& row) {
     hand.position = middle + way * along;
     const stepping::StepReport report = stepper.step(state, hand);
     row.way.push_back(way), row.force.push_back(-dot(report.tool_force, along));
-    row.work += per_tick * row.force.back(), row.viscous += elements::viscous_work(model, before, state);
+    row.work += per_tick * row.force.back(), row.lost += elements::viscous_work(model, before, state);
+    row.lost += elements::severed_energy(model, before, state);
   }
   row.area = area_in_block(state);
 }
@@ -129,15 +130,15 @@ Chapter chapter_of(const BladeResult& result) {
                    {"angle_deg", "to the lattice [deg]", 3},
                    {"work_j", "work [J]"},
                    {"area_mm2", "area [mm^2]"},
-                   {"viscous_j", "viscous losses [J]"},
+                   {"lost_j", "losses [J]"},
                    {"work_ratio", "work / (J A + losses)", 3},
                    {"mean_n", "mean force [N]"},
                    {"chatter_percent", "chatter [%]", 3},
                    {"jump_percent", "largest jump [%]", 3}};
   for (const BladeResult::Row& row : result.rows) {
-    const double ratio = row.work / (row.toughness * row.area + row.viscous);
+    const double ratio = row.work / (row.toughness * row.area + row.lost);
     table.rows.push_back({1e3 * row.radius, row.toughness, row.angle * 180 / std::numbers::pi, row.work, 1e6 * row.area,
-                          row.viscous, ratio, row.mean, 100 * row.chatter, 100 * row.jump});
+                          row.lost, ratio, row.mean, 100 * row.chatter, 100 * row.jump});
     Figure figure{.recipe = "blade", .radius = row.radius, .source = "Atkins & Mai 1985"};
     figure.name = "work over toughness times area and losses, " + name_of(row), figure.measured = ratio;
     figure.reference = 1, figure.goal = Goal{0.95, 1.05};
