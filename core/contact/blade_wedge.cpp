@@ -10,6 +10,9 @@ namespace {
 /// the tissue closes the blade's width by some percent, and not so stiff that the solve suffers.
 constexpr double kStiffness = 40;
 
+/// Places on the flanks are not much closer than this [spacings]: closer ones would press the same spheres.
+constexpr double kApart = 0.25;
+
 /// The flanks begin within this around an organ's surface, or within the distance of two nodes where that is more, up
 /// to what the depth below the surface knows [m].
 constexpr double kShallowest = 1e-3, kDeepest = 4e-3;
@@ -32,16 +35,17 @@ struct BladeWedge::Flank {
   Vec3 rest_up{}, rest_back{};  ///< moves at rest that move the place by `up` and `back`
   Vec3 normal{};                ///< of the flanks at rest, unit vector
   double height = 0;            ///< of the flanks [m]
-  double along = 0;             ///< from the tip [m]
-  double apart = 0;             ///< of nodes [m]
+  double along = 0;             ///< of the places from the tip [m]
+  double apart = 0;             ///< from these places to the next along the edge [m]
+  double rows = 0;              ///< of places behind the edge
   double width = 0;             ///< of the flanks' strip at rest [m]
 };
 
 /// Adds the contact of one place on the flanks; returns its force on the tissue along them [N].
 Vec3 BladeWedge::press(const StateView& state, const cutting::CutFront& front, const Flank& flank, std::size_t row,
-                       double h, bool is_predicted, PointContacts& contacts) const {
+                       PointContacts& contacts) const {
   const OrganRange& organ = model_.organs[flank.organ];
-  const double behind = (double(row) + 0.5) / kRows * flank.height;
+  const double behind = (double(row) + 0.5) / flank.rows * flank.height;
   // The point is ground at 45 degrees.
   const auto resolved = [&](double distance) { return std::clamp(2 * distance / organ.spacing, 0.0, 1.0); };
   const double share = resolved(behind) * resolved(flank.along - behind);
@@ -59,10 +63,9 @@ Vec3 BladeWedge::press(const StateView& state, const cutting::CutFront& front, c
     off_cut[i] = dot(across, state.position[std::size_t(opening.sphere[i])]) - opening.apart[i];
   const Carriers carriers{{opening.sphere.data(), count}, {opening.weight.data(), count}};
   const double closed = local_thickness(flank.tool, behind) - opening.jump(off_cut);
-  const double expected = is_predicted ? closed : closed - h * dot(across, weighted(carriers, state.velocity));
-  if (!(expected > 0)) return {};
+  if (!(closed > 0)) return {};
   const double whole =
-      kStiffness * organ.modulus / organ.spacing * share * opening.whole * flank.width * flank.height / kRows;
+      kStiffness * organ.modulus / organ.spacing * share * opening.whole * flank.width * flank.height / flank.rows;
   const double k = in_cut * whole;
   contacts.add({.axis = across, .force = k * closed * across, .k = k, .only_pushes = true}, carriers);
 
@@ -75,14 +78,13 @@ Vec3 BladeWedge::press(const StateView& state, const cutting::CutFront& front, c
                (front.in_cut(flank.organ, rest + kNudge * move, shallow) -
                 front.in_cut(flank.organ, rest - kNudge * move, shallow)) /
                (2 * kNudge);
-    return 0.5 * more_k * expected * expected - k * expected * dot(change, move);
+    return 0.5 * more_k * closed * closed - k * closed * dot(change, move);
   };
   return force_along(flank.rest_up) * flank.up + force_along(flank.rest_back) * flank.back;
 }
 
 void BladeWedge::find(const StateView& state, const Tool& tool, const cutting::CutFront& front,
-                      const cutting::BladeEdge& edge, double h, bool is_predicted, std::size_t hand,
-                      PointContacts& contacts) const {
+                      const cutting::BladeEdge& edge, std::size_t hand, PointContacts& contacts) const {
   const double length = norm(edge.heel - edge.tip);
   const Vec3 up = (edge.heel - edge.tip) / length, point = edge.back - edge.tip;
   const Vec3 behind = point - dot(point, up) * up;
@@ -92,20 +94,22 @@ void BladeWedge::find(const StateView& state, const Tool& tool, const cutting::C
   for (std::size_t n = cutting::kPointNodes; n < kEdgeNodes; ++n) {
     const cutting::CutFront::Node& node = front.nodes()[n];
     if (node.organ < 0 || node.place.count == 0) continue;
-    const Vec3 to_edge = at_node(edge, n) - node.place.at(state.position);
+    const double least = kApart * model_.organs[std::size_t(node.organ)].spacing;
+    const auto stride = std::size_t(std::max(1.0, std::floor(least / apart + 0.5)));
+    if ((n - cutting::kPointNodes) % stride != 0) continue;
     Flank flank{std::size_t(node.organ), tool, up, behind / height};
-    flank.height = height;
-    flank.rest = front.rest(n) + node.place.at_rest(state.position, to_edge);
+    flank.height = height, flank.rows = std::clamp(std::floor(height / least + 0.5), 1.0, double(kRows));
+    flank.along = double(n - cutting::kPointNodes) * apart, flank.apart = double(stride) * apart;
+    flank.rest = front.rest(n) + node.place.at_rest(state.position, at_node(edge, n) - node.place.at(state.position));
     flank.rest_up = node.place.at_rest(state.position, flank.up);
     flank.rest_back = node.place.at_rest(state.position, flank.back);
     flank.normal = cross(flank.rest_up, flank.rest_back);
     const double size = norm(flank.normal);
     if (!(size > 0)) continue;
     flank.normal = flank.normal / size;
-    flank.along = double(n - cutting::kPointNodes) * apart, flank.apart = apart;
-    flank.width = norm(flank.rest_up) * apart * (n == cutting::kPointNodes || n + 1 == kEdgeNodes ? 0.5 : 1.0);
+    flank.width = norm(flank.rest_up) * flank.apart;
     Vec3 along;
-    for (std::size_t row = 0; row < kRows; ++row) along += press(state, front, flank, row, h, is_predicted, contacts);
+    for (std::size_t row = 0; double(row) < flank.rows; ++row) along += press(state, front, flank, row, contacts);
     if (along == Vec3{}) continue;
     const auto count = std::size_t(node.place.count);
     contacts.add({.axis = up, .force = along, .hand = std::int32_t(hand)},

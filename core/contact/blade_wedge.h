@@ -30,17 +30,17 @@ class BladeWedge {
     return model_.cut_resistance.any() ? kEdgeNodes * (kRows * cutting::Opening::kMost + cutting::Place::kMost) : 0;
   }
 
-  /// Adds the contacts of the flanks of the blade in a hand with the cut that they are in. The arguments are those of
-  /// BladeForce::find().
+  /// Adds the contacts of the flanks of the blade in a hand with the cut that they are in. `edge`: of the
+  /// blade at the end of a step.
   void find(const StateView& state, const Tool& tool, const cutting::CutFront& front, const cutting::BladeEdge& edge,
-            double h, bool is_predicted, std::size_t hand, PointContacts& contacts) const;
+            std::size_t hand, PointContacts& contacts) const;
 
-  static constexpr std::size_t kRows = 3;  ///< of places on the flanks
+  static constexpr std::size_t kRows = 3;  ///< of places on the flanks, at most
 
  private:
   struct Flank;
-  Vec3 press(const StateView& state, const cutting::CutFront& front, const Flank& flank, std::size_t row, double h,
-             bool is_predicted, PointContacts& contacts) const;
+  Vec3 press(const StateView& state, const cutting::CutFront& front, const Flank& flank, std::size_t row,
+             PointContacts& contacts) const;
 
   const Model& model_;
 };

@@ -84,7 +84,7 @@ void Contacts::find(const StateView& state, const HeldTools& tools, const Contac
     if (!tool.is(ToolKind::scalpel) || !blade_.any()) continue;
     CTPM_CHECK(tool.front != nullptr, "the front of a cut is known before the blade's contacts are detected");
     blade_.find(state, *tool.tool, *tool.front, tool.edge_at(step.share), step.h, from_velocity, hand, points_);
-    wedge_.find(state, *tool.tool, *tool.front, tool.edge_at(step.share), step.h, from_velocity, hand, points_);
+    wedge_.find(state, *tool.tool, *tool.front, tool.edge_at(step.share), hand, points_);
   }
   if (cut_faces_.is_wanted()) cut_faces_.find(state, points_);
 }
