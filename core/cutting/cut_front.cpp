@@ -225,7 +225,7 @@ double CutFront::newness(std::int32_t organ, Vec3 rest, Vec3 way_at_rest) const 
 double CutFront::in_cut(std::size_t organ, Vec3 rest, double shallow) const {
   const double below = std::clamp(0.5 + depth_.at(organ, rest) / shallow, 0.0, 1.0);
   if (!(below > 0)) return 0;
-  const double distance = swept_.distance(*state_, std::int32_t(organ), rest);
+  const double distance = swept_.distance(*state_, std::int32_t(organ), rest, kInCut);
   return below * std::clamp((SweptIndex::kFar - distance) / (SweptIndex::kFar - kInCut), 0.0, 1.0);
 }
 
