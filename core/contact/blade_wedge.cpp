@@ -13,10 +13,6 @@ constexpr double kStiffness = 40;
 /// Places on the flanks are not much closer than this [spacings]: closer ones would press the same spheres.
 constexpr double kApart = 0.25;
 
-/// The flanks begin within this around an organ's surface, or within the distance of two nodes where that is more, up
-/// to what the depth below the surface knows [m].
-constexpr double kShallowest = 1e-3, kDeepest = 4e-3;
-
 /// Half of the way over which a change along the flanks is measured [m].
 constexpr double kNudge = 0.05e-3;
 
@@ -50,8 +46,9 @@ Vec3 BladeWedge::press(const StateView& state, const cutting::CutFront& front, c
   const auto resolved = [&](double distance) { return std::clamp(2 * distance / organ.spacing, 0.0, 1.0); };
   const double share = resolved(behind) * resolved(flank.along - behind);
   const Vec3 rest = flank.rest + behind * flank.rest_back;
-  const double shallow = std::clamp(flank.apart, kShallowest, kDeepest);
-  const double in_cut = share > 0 ? front.in_cut(flank.organ, rest, shallow) : 0.0;
+  const double in_tissue = share > 0 ? front.in_tissue(flank.organ, rest) : 0.0;
+  if (!(in_tissue > 0)) return {};
+  const double in_cut = front.in_cut(flank.organ, rest);
   if (!(in_cut > 0)) return {};
   cutting::Opening opening;
   front.openings().find(flank.organ, rest, flank.normal, opening);
@@ -64,21 +61,20 @@ Vec3 BladeWedge::press(const StateView& state, const cutting::CutFront& front, c
   const Carriers carriers{{opening.sphere.data(), count}, {opening.weight.data(), count}};
   const double closed = local_thickness(flank.tool, behind) - opening.jump(off_cut);
   if (!(closed > 0)) return {};
-  const double whole =
-      kStiffness * organ.modulus / organ.spacing * share * opening.whole * flank.width * flank.height / flank.rows;
-  const double k = in_cut * whole;
+  const double whole = kStiffness * organ.modulus / organ.spacing * share * in_cut * opening.whole * flank.width *
+                       flank.height / flank.rows;
+  const double k = in_tissue * whole;
   contacts.add({.axis = across, .force = k * closed * across, .k = k, .only_pushes = true}, carriers);
 
   // What the energy k / 2 closed^2 changes by while the blade moves along its flanks.
   const Vec3 change = opening.change(off_cut);
   const auto force_along = [&](Vec3 move) {
-    double more_k = 0;
-    if (in_cut < 1)
-      more_k = whole *
-               (front.in_cut(flank.organ, rest + kNudge * move, shallow) -
-                front.in_cut(flank.organ, rest - kNudge * move, shallow)) /
-               (2 * kNudge);
-    return 0.5 * more_k * closed * closed - k * closed * dot(change, move);
+    double deeper = 0;
+    if (in_tissue < 1)
+      deeper =
+          (front.in_tissue(flank.organ, rest + kNudge * move) - front.in_tissue(flank.organ, rest - kNudge * move)) /
+          (2 * kNudge);
+    return 0.5 * whole * deeper * closed * closed - k * closed * dot(change, move);
   };
   return force_along(flank.rest_up) * flank.up + force_along(flank.rest_back) * flank.back;
 }

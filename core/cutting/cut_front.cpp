@@ -30,6 +30,9 @@ constexpr double kNear = 3e-3;
 /// less, for another law.
 constexpr double kLeastReach = 1.5;
 
+/// From this depth on a place is in tissue in full, within what the depth tells [m].
+constexpr double kDeep = 2e-3;
+
 /// A place that is nearer to the swept surface than this is in the cut [m].
 constexpr double kInCut = 0.3e-3;
 
@@ -222,11 +225,14 @@ double CutFront::newness(std::int32_t organ, Vec3 rest, Vec3 way_at_rest) const 
   return std::clamp((distance - kCut) / (kWhole - kCut), 0.0, 1.0);
 }
 
-double CutFront::in_cut(std::size_t organ, Vec3 rest, double shallow) const {
-  const double below = std::clamp(0.5 + depth_.at(organ, rest) / shallow, 0.0, 1.0);
-  if (!(below > 0)) return 0;
+double CutFront::in_tissue(std::size_t organ, Vec3 rest) const {
+  const double share = std::clamp(depth_.at(organ, rest) / kDeep, 0.0, 1.0);
+  return share * share * (3 - 2 * share);
+}
+
+double CutFront::in_cut(std::size_t organ, Vec3 rest) const {
   const double distance = swept_.distance(*state_, std::int32_t(organ), rest, kInCut);
-  return below * std::clamp((SweptIndex::kFar - distance) / (SweptIndex::kFar - kInCut), 0.0, 1.0);
+  return std::clamp((SweptIndex::kFar - distance) / (SweptIndex::kFar - kInCut), 0.0, 1.0);
 }
 
 /// How wide the faces of the cut gape around a place, along the unit vector `across` [m].

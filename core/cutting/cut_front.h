@@ -56,9 +56,10 @@ class CutFront {
   /// Place at rest of a node's front, in the substep.
   Vec3 rest(std::size_t node) const { return front_[node]; }
 
-  /// How far a place at rest in an organ is in tissue and in a cut: 1 where it is, falling to 0 within `shallow` [m]
-  /// around the organ's surface, and between kInCut and SweptIndex::kFar from the swept surface.
-  double in_cut(std::size_t organ, Vec3 rest, double shallow) const;
+  /// How far a place at rest is in the tissue of an organ: 0 outside, rising smoothly to 1 at a depth of 2 mm.
+  double in_tissue(std::size_t organ, Vec3 rest) const;
+  /// How far it is in a cut: 1 near the swept surface, falling to 0 up to SweptIndex::kFar from it.
+  double in_cut(std::size_t organ, Vec3 rest) const;
 
   const Openings& openings() const { return openings_; }
 

@@ -13,8 +13,9 @@ constexpr double kReach = 1.5;
 /// so without a jump [spacings].
 constexpr double kOnPlane = 0.1;
 
-/// A side of which the kernels sum to this is enough; half a lattice sums to about 1.
-constexpr double kEnough = 0.2;
+/// A side of which the kernels sum to kNone is none, and to kEnough enough; half a lattice sums to about 1. Less than
+/// kNone would be a sphere at the rim of the reach, which must not bear alone what many do.
+constexpr double kNone = 0.1, kEnough = 0.4;
 
 /// Added to the moments along the cut, so that few spheres do not make up slopes [spacings^2].
 constexpr double kStiffness = 0.01;
@@ -59,7 +60,7 @@ void Openings::find(std::size_t organ, Vec3 rest, Vec3 normal, Opening& o) const
     o.mean_[side].second += o.kernel_[count] * o.along_[count].second;
     ++count;
   });
-  o.whole = std::clamp(std::min(o.total_[0], o.total_[1]) / kEnough, 0.0, 1.0);
+  o.whole = std::clamp((std::min(o.total_[0], o.total_[1]) - kNone) / (kEnough - kNone), 0.0, 1.0);
   if (!(o.whole > 0)) return;
   o.count = std::int32_t(count);
   for (std::size_t side = 0; side < 2; ++side)
