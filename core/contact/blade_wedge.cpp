@@ -44,7 +44,7 @@ Vec3 BladeWedge::press(const StateView& state, const cutting::CutFront& front, c
   const double behind = (double(row) + 0.5) / flank.rows * flank.height;
   // The point is ground at 45 degrees.
   const auto resolved = [&](double distance) { return std::clamp(2 * distance / organ.spacing, 0.0, 1.0); };
-  const double share = resolved(behind) * resolved(flank.along - behind);
+  const double share = organ.modulus > 0 ? resolved(behind) * resolved(flank.along - behind) : 0.0;
   const Vec3 rest = flank.rest + behind * flank.rest_back;
   const double in_tissue = share > 0 ? front.in_tissue(flank.organ, rest) : 0.0;
   if (!(in_tissue > 0)) return {};

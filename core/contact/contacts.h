@@ -109,7 +109,8 @@ class ContactSet {
  public:
   const ContactStep& step() const { return step_; }
 
-  /// Number of points that the ball in a hand touches; for a blade, of nodes of its edge that tissue holds.
+  /// Number of points that the ball in a hand touches; for a blade, of nodes of its edge that tissue holds, and of
+  /// those behind which tissue holds its flanks.
   std::int32_t touched(std::size_t hand) const;
 
   /// Largest displacement from rest [m], at `position`, of a point that the ball in a hand touches, along its contact;
