@@ -144,6 +144,7 @@ struct BladeResult {
     double mean = 0;                   ///< force in the middle 30 mm [N]
     double chatter = 0;                ///< of that force about its moving mean over 6 mm, RMS over mean [share]
     double jump = 0;                   ///< its largest change in one tick over the mean [share]
+    double opening = 0;                ///< beside the flanks over the blade's thickness, mean of the middle 30 mm [1]
   };
   std::vector<Row> rows;
 };
