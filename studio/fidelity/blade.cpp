@@ -143,7 +143,8 @@ Chapter chapter_of(const BladeResult& result) {
       "edge "
       "swept, and what the tissue's Kelvin units dissipate and severed elements held. The opening is that beside the "
       "middle of "
-      "the flanks, halfway down, over the blade's thickness: 1 where the lattice resolves the flanks. Force, chatter "
+      "the flanks, halfway down, over the blade's thickness, 0.4 mm: 1 where the lattice resolves the flanks. Force, "
+      "chatter "
       "(RMS about a moving mean of 6 mm) and the "
       "largest change in one tick are read over the middle 30 mm."};
   reports::Table table;
@@ -176,7 +177,9 @@ Chapter chapter_of(const BladeResult& result) {
     figure.unit = "1", figure.source = "a rigid blade", figure.reference = 1;
     figure.name = "opening beside the flanks over the blade's thickness, " + name_of(row);
     figure.measured = row.opening;
-    figure.goal = Goal{row.radius > 3e-3 ? 0.4 : 0.8, 1.25};
+    // Tough tissue is pulled so far along by the edge that its cut gapes wider by itself.
+    figure.goal = Goal{row.radius > 3e-3 ? 0.6 : 0.9, {}};
+    if (row.toughness <= 200) figure.goal->most = 1.1;
     chapter.figures.push_back(figure);
   }
   for (std::size_t i = 0; i + 2 < result.rows.size(); i += 3) {
