@@ -171,6 +171,9 @@ double stiffest_spring(const Model& model) {
   return k;
 }
 
+/// About that of a surgical blade No. 10 [m]. Tool's own default is that of sessions that do not store it.
+constexpr double kBladeThickness = 0.4e-3;
+
 void add_tools(Model& model, const SceneSpec& scene) {
   for (const ToolSpec& spec : scene.tools) {
     Tool tool;
@@ -178,7 +181,7 @@ void add_tools(Model& model, const SceneSpec& scene) {
     tool.radius = spec.radius.value_or(0), tool.blade_length = spec.blade_length.value_or(0);
     tool.blade_reach = spec.blade_reach.value_or(tool.blade_reach);
     tool.flank_height = spec.flank_height.value_or(tool.flank_height);
-    tool.blade_thickness = spec.blade_thickness.value_or(tool.blade_thickness);
+    tool.blade_thickness = spec.blade_thickness.value_or(kBladeThickness);
     if (spec.holds) tool.sphere = nearest_sphere(model, *spec.holds);
     model.tools.push_back(tool);
   }

@@ -290,9 +290,9 @@ void describe_fields(V& v, ToolSpec& tool) {
                false, "6"},
            tool.flank_height, units::millimetre, within(0, 200));
   v.number(Key{"blade_thickness_mm",
-               "Cut faces that have opened by this distance no longer touch a scalpel's flanks; not allowed for "
-               "others.",
-               false, "1"},
+               "How thick a scalpel is behind its bevel: so far it holds the faces of a cut apart. Faces that gape "
+               "twice as wide do not rub; not allowed for others.",
+               false, "0.4"},
            tool.blade_thickness, units::millimetre, within(0.01, 100));
   v.point(
       Key{"at_mm", "Where a hand in the browser takes it up: a ball's centre, a blade's tip; not allowed for a pin.",

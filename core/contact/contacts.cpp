@@ -12,10 +12,11 @@ namespace ctpm::contact {
 namespace {
 
 /// Contacts of a Model's blades and cut faces, and entries of their carriers.
-std::pair<std::size_t, std::size_t> of_cuts(const Model& model, const BladeForce& blade,
+std::pair<std::size_t, std::size_t> of_cuts(const Model& model, const BladeForce& blade, const BladeWedge& wedge,
                                             const CutFaceContact& cut_faces) {
   if (!model.has_scalpel()) return {0, 0};
-  return {blade.capacity() + cut_faces.capacity(), blade.entries() + 2 * cut_faces.capacity()};
+  return {blade.capacity() + wedge.capacity() + cut_faces.capacity(),
+          blade.entries() + wedge.entries() + 2 * cut_faces.capacity()};
 }
 
 void sort_by_point(Touched& touched) {
@@ -41,9 +42,10 @@ Contacts::Contacts(const Model& model, const elements::Kernels& kernels, StageWa
       body_contact_(model, bodies_, cuts_),
       obstacles_(model, bodies_, cuts_),
       blade_(model),
+      wedge_(model),
       cut_faces_(model),
-      points_(model, pressed_capacity().first + of_cuts(model, blade_, cut_faces_).first,
-              pressed_capacity().second + of_cuts(model, blade_, cut_faces_).second),
+      points_(model, pressed_capacity().first + of_cuts(model, blade_, wedge_, cut_faces_).first,
+              pressed_capacity().second + of_cuts(model, blade_, wedge_, cut_faces_).second),
       explicit_solve_(model, points_) {
   for (const OrganRange& organ : model.organs) {
     const auto first = model.held_axes.begin() + organ.first;
@@ -82,6 +84,7 @@ void Contacts::find(const StateView& state, const HeldTools& tools, const Contac
     if (!tool.is(ToolKind::scalpel) || !blade_.any()) continue;
     CTPM_CHECK(tool.front != nullptr, "the front of a cut is known before the blade's contacts are detected");
     blade_.find(state, *tool.tool, *tool.front, tool.edge_at(step.share), step.h, from_velocity, hand, points_);
+    wedge_.find(state, *tool.tool, *tool.front, tool.edge_at(step.share), hand, points_);
   }
   if (cut_faces_.is_wanted()) cut_faces_.find(state, points_);
 }

@@ -7,6 +7,7 @@
 
 #include "core/contact/ball_contact.h"
 #include "core/contact/blade_force.h"
+#include "core/contact/blade_wedge.h"
 #include "core/contact/body_contact.h"
 #include "core/contact/cut_face_contact.h"
 #include "core/contact/cut_surfaces.h"
@@ -94,6 +95,7 @@ class Contacts {
   BodyContact body_contact_;
   ObstacleContact obstacles_;
   BladeForce blade_;
+  BladeWedge wedge_;
   CutFaceContact cut_faces_;
   PointContacts points_;
   ExplicitSolve explicit_solve_;
@@ -107,7 +109,8 @@ class ContactSet {
  public:
   const ContactStep& step() const { return step_; }
 
-  /// Number of points that the ball in a hand touches; for a blade, of nodes of its edge that tissue holds.
+  /// Number of points that the ball in a hand touches; for a blade, of nodes of its edge that tissue holds, and of
+  /// those behind which tissue holds its flanks.
   std::int32_t touched(std::size_t hand) const;
 
   /// Largest displacement from rest [m], at `position`, of a point that the ball in a hand touches, along its contact;

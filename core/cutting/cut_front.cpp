@@ -30,6 +30,12 @@ constexpr double kNear = 3e-3;
 /// less, for another law.
 constexpr double kLeastReach = 1.5;
 
+/// From this depth on a place is in tissue in full, within what the depth tells [m].
+constexpr double kDeep = 2e-3;
+
+/// A place that is nearer to the swept surface than this is in the cut [m].
+constexpr double kInCut = 0.3e-3;
+
 /// Length over which a flank that leaves the tissue comes off it [m].
 constexpr double kFlankEnds = 1e-3;
 constexpr int kFlankPoints = 3;
@@ -78,7 +84,7 @@ double whole_mass(const Model& model, std::size_t organ) {
 }  // namespace
 
 CutFront::CutFront(const Model& model)
-    : model_(model), map_(model), depth_(model, map_), swept_(model), elements_(model, depth_) {
+    : model_(model), map_(model), depth_(model, map_), swept_(model), elements_(model, depth_), openings_(model, map_) {
   CTPM_CHECK(model.organs.size() < 255, "the swept surface names organs by a byte");
   for (const OrganRange& organ : model.organs)
     reach_.push_back(0), box_.emplace_back(model.rest_position[std::size_t(organ.first)]);
@@ -219,6 +225,16 @@ double CutFront::newness(std::int32_t organ, Vec3 rest, Vec3 way_at_rest) const 
   return std::clamp((distance - kCut) / (kWhole - kCut), 0.0, 1.0);
 }
 
+double CutFront::in_tissue(std::size_t organ, Vec3 rest) const {
+  const double share = std::clamp(depth_.at(organ, rest) / kDeep, 0.0, 1.0);
+  return share * share * (3 - 2 * share);
+}
+
+double CutFront::in_cut(std::size_t organ, Vec3 rest) const {
+  const double distance = swept_.distance(*state_, std::int32_t(organ), rest, kInCut);
+  return std::clamp((SweptIndex::kFar - distance) / (SweptIndex::kFar - kInCut), 0.0, 1.0);
+}
+
 /// How wide the faces of the cut gape around a place, along the unit vector `across` [m].
 double CutFront::opening(const Place& at, const StateView& state, Vec3 across) const {
   double sum = 0, total = 0;
@@ -246,7 +262,7 @@ double CutFront::rubbed_height(std::size_t n, const Tool& scalpel, const StateVi
   const Vec3 normal = cross(edge, way);
   const double size = norm(normal);
   const double gap = share > 0 && size > 0 ? opening(node.place, state, normal / size) : 0.0;
-  return scalpel.flank_height * share * std::max(0.0, 1 - gap / scalpel.blade_thickness);
+  return scalpel.flank_height * share * std::clamp(2 - gap / scalpel.blade_thickness, 0.0, 1.0);
 }
 
 double CutFront::hold(std::size_t n, const Tool& scalpel, const StateView& state, Vec3 edge, Vec3 way) const {

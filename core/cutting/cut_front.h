@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/cutting/cutting.h"
+#include "core/cutting/opening.h"
 #include "core/cutting/rest_map.h"
 #include "core/cutting/swept_surface.h"
 #include "core/cutting/tissue_depth.h"
@@ -52,6 +53,16 @@ class CutFront {
   /// edge, and friction of the flanks.
   double hold(std::size_t node, const Tool& scalpel, const StateView& state, Vec3 edge, Vec3 way) const;
 
+  /// Place at rest of a node's front, in the substep.
+  Vec3 rest(std::size_t node) const { return front_[node]; }
+
+  /// How far a place at rest is in the tissue of an organ: 0 outside, rising smoothly to 1 at a depth of 2 mm.
+  double in_tissue(std::size_t organ, Vec3 rest) const;
+  /// How far it is in a cut: 1 near the swept surface, falling to 0 up to SweptIndex::kFar from it.
+  double in_cut(std::size_t organ, Vec3 rest) const;
+
+  const Openings& openings() const { return openings_; }
+
   /// Draws the front after the edge at the end of a substep. What it sweeps is added to the swept surface, and elements
   /// that it crosses are severed; they are appended to `crossings`. Returns the number of severed elements, constraints
   /// and angle springs.
@@ -81,6 +92,7 @@ class CutFront {
   TissueDepth depth_;
   SweptIndex swept_;
   RestElements elements_;
+  Openings openings_;
   bool resists_ = false;
   std::vector<Material> material_;        ///< (sphere_count, or empty)
   std::vector<std::uint8_t> has_volume_;  ///< of each organ: it has a surface or lattice cells, and so an inside

@@ -233,18 +233,19 @@ void SweptIndex::insert(const State& state, std::size_t row) {
   }
 }
 
-double SweptIndex::distance(const State& state, std::int32_t organ, Vec3 rest) const {
+double SweptIndex::distance(const State& state, std::int32_t organ, Vec3 rest, double enough) const {
   double least2 = kFar * kFar;
+  const double enough2 = enough * enough;
   const auto look_at = [&](std::size_t row, std::size_t node) {
     if (state.swept_organ[row * kEdgeNodes + node] != organ + 1) return;
     least2 = std::min(least2, squared_distance(rest, swept_quad(state, row, node)));
   };
   const std::int64_t bucket = bucket_of(rest);
   if (bucket >= 0)
-    for (std::int32_t e = head_[std::size_t(bucket)]; e >= 0; e = entries_[std::size_t(e)].next)
+    for (std::int32_t e = head_[std::size_t(bucket)]; e >= 0 && least2 >= enough2; e = entries_[std::size_t(e)].next)
       look_at(std::size_t(entries_[std::size_t(e)].row), std::size_t(entries_[std::size_t(e)].node));
   for (std::size_t row = std::max<std::size_t>(rows_, 1); row < swept_rows(state); ++row)
-    for (std::size_t node = 0; node + 1 < kEdgeNodes; ++node) look_at(row, node);
+    for (std::size_t node = 0; node + 1 < kEdgeNodes && least2 >= enough2; ++node) look_at(row, node);
   return std::sqrt(least2);
 }
 

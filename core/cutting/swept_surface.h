@@ -88,8 +88,9 @@ class SweptIndex {
   /// Follows the swept surface of `state`. Fast where the State goes on from that of the last call.
   void update(const State& state);
 
-  /// Distance of a place at rest from the surface of `state`, as of update(), in an organ [m], kFar at most.
-  double distance(const State& state, std::int32_t organ, Vec3 rest) const;
+  /// Distance of a place at rest from the surface of `state`, as of update(), in an organ [m], kFar at most. Where it
+  /// is less than `enough` [m], some distance less than that.
+  double distance(const State& state, std::int32_t organ, Vec3 rest, double enough = 0) const;
 
  private:
   static constexpr double kBucket = kRestCell;  ///< [m]

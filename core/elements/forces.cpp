@@ -55,4 +55,11 @@ double viscous_work(const Model& model, const State& before, const State& after)
   return work;
 }
 
+double severed_energy(const Model& model, const State& before, const State& after) {
+  if (before.axial_severed == after.axial_severed) return 0;
+  State whole = after;
+  whole.axial_severed = before.axial_severed, whole.angle_severed = before.angle_severed;
+  return elastic_energy(model, whole) - elastic_energy(model, after);
+}
+
 }  // namespace ctpm::elements

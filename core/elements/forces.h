@@ -17,4 +17,8 @@ double elastic_energy(const Model& model, const State& state);
 /// severed in it.
 double viscous_work(const Model& model, const State& before, const State& after);
 
+/// Elastic energy [J] that is gone with the elements and angle springs that are severed in `after` and not in `before`,
+/// where they are at the end.
+double severed_energy(const Model& model, const State& before, const State& after);
+
 }  // namespace ctpm::elements

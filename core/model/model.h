@@ -117,7 +117,9 @@ struct Tool {
   double blade_reach_spacings = 1.5;
   /// Height of the flanks behind the edge [m], >= 0. Default: about that of a surgical blade No. 10 (estimate).
   double flank_height = 6e-3;
-  /// Cut faces that are open wider than this do not touch the flanks [m], > 0. Default: estimate.
+  /// How thick the blade is behind its bevel, and so far it holds the faces of a cut apart (contact::BladeWedge). Faces
+  /// that gape twice as wide do not touch the flanks [m], > 0. Default: estimate, kept for sessions that do not store
+  /// it.
   double blade_thickness = 1e-3;
   double slowest_slip = 1e-3;  ///< retired with physics revision 4, where the front is held as a ball grips
 };

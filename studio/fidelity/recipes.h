@@ -140,10 +140,11 @@ struct BladeResult {
     std::vector<double> way, force;    ///< [m] from the block's middle, [N] against the way      (tick_count)
     double work = 0;                   ///< of the hand [J]
     double area = 0;                   ///< of the cut [m^2]
-    double viscous = 0;                ///< energy that Kelvin units dissipated [J]
+    double lost = 0;                   ///< energy that Kelvin units dissipated, or that severed elements held [J]
     double mean = 0;                   ///< force in the middle 30 mm [N]
     double chatter = 0;                ///< of that force about its moving mean over 6 mm, RMS over mean [share]
     double jump = 0;                   ///< its largest change in one tick over the mean [share]
+    double opening = 0;                ///< beside the flanks over the blade's thickness, mean of the middle 30 mm [1]
   };
   std::vector<Row> rows;
 };

@@ -207,6 +207,15 @@ inline constexpr GoldenRow kGoldenRevision14[] = {
     {"touched bridge, sdirk2", {0xfc009c869aa9e49a, 0x50d838f595c1c99f, 0x8d35e7d96d411f5a, 0xb196401c900052a3}},
 };
 
+inline constexpr GoldenRow kGoldenRevision15[] = {
+    {"full, auto", {0xb6c71a93224b3c05, 0x532dc5c79cc197c6, 0xcfd5eacf13d457bc, 0x16e9c74cf6074000}},
+    {"full, sdirk2", {0x2a0b2e3c0646e61e, 0x4b236292430c12aa, 0xf8deca6d379b5100, 0x4e0184ba31493add}},
+    {"wedge, auto", {0xb6c71a93224b3c05, 0x532dc5c79cc197c6, 0xae26d3f4f2e1c428, 0x06bc8fb3d94197b9}},
+    {"wedge, sdirk2", {0x2a0b2e3c0646e61e, 0x4b236292430c12aa, 0x944dddb04c0a3826, 0x72afb1418b0f1ae7}},
+    {"light, backward-euler", {0xd3d3d238bbc81e70, 0xd3b269e181b3410a, 0x6b65003f6a34f32c, 0x71a62c8979eb82ff}},
+    {"light, sdirk2", {0xd26734d372d4df92, 0x24a6390d14dc60ab, 0x5893454633e39af3, 0x5a81ebdf3bbb1f6b}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},   {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189},   {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
@@ -215,6 +224,7 @@ inline constexpr GoldenRevision kGoldenRevisions[] = {
     {9, kGoldenRevision9, 0xb75cb37d4faeb3c5},   {10, kGoldenRevision10, 0x6d5ddd69b485de71},
     {11, kGoldenRevision11, 0x4162fa4fa1d24cae}, {12, kGoldenRevision12, 0x1a990242ddda6fc4},
     {13, kGoldenRevision13, 0xa5637b24229bb1f2}, {14, kGoldenRevision14, 0x463cb460f23844de},
+    {15, kGoldenRevision15, 0xc7644e74b0d461e5},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

@@ -25,6 +25,7 @@ struct Session {
   const char* name;  ///< name of its row
   network::Structure structure;
   std::optional<Integrator> integrator;
+  Inputs (*inputs)(int) = testing::golden_inputs;
 };
 
 constexpr Session kSessions[] = {
@@ -41,6 +42,8 @@ constexpr Session kSessions[] = {
 constexpr Session kFullSessions[] = {
     {"full, auto", network::Structure::ctpm, std::nullopt},
     {"full, sdirk2", network::Structure::ctpm, Integrator::sdirk2},
+    {"wedge, auto", network::Structure::ctpm, std::nullopt, testing::wedge_inputs},
+    {"wedge, sdirk2", network::Structure::ctpm, Integrator::sdirk2, testing::wedge_inputs},
 };
 
 /// Of make_light_model().
@@ -126,7 +129,8 @@ TEST(Golden, ASmallSessionGivesTheSameBitsInEveryBuild) {
   for (const Session& session : kFullSessions) {
     const GoldenRow* row = find_row(session.name);
     ASSERT_NE(row, nullptr) << session.name;
-    expect_row(testing::run_golden(testing::make_full_model(6, 5, 5), 400, session.integrator), *row);
+    expect_row(testing::run_golden(testing::make_full_model(6, 5, 5), 400, session.integrator, {}, session.inputs),
+               *row);
   }
   for (const Session& session : kLightSessions) {
     const GoldenRow* row = find_row(session.name);

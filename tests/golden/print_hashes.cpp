@@ -18,7 +18,7 @@ struct Session {
   bool has_surface = false;
   std::int32_t hands = 1;
   Inputs (*inputs)(int) = testing::golden_inputs;
-  bool is_light = false;
+  bool is_light = false, is_full = false;
 };
 
 constexpr Session kSessions[] = {
@@ -43,6 +43,8 @@ constexpr Session kSessions[] = {
     {"touched edge", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 1,
      testing::touched_edge_inputs},
     {"two hands", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 2, testing::two_hands_inputs},
+    {"wedge", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, false, 1, testing::wedge_inputs, false,
+     true},
     {"light", 6, 5, 5, 400, network::Structure::ctpm, Integrator::backward_euler, false, false, 1,
      testing::golden_inputs, true},
 };
@@ -57,6 +59,9 @@ int main() {
         return testing::run_golden(
             testing::make_skinned_model(session.ni, session.nj, session.nk, false, session.hands), session.ticks,
             session.integrator, options, session.inputs);
+      if (session.is_full)
+        return testing::run_golden(testing::make_full_model(session.ni, session.nj, session.nk), session.ticks,
+                                   session.integrator, options, session.inputs);
       if (session.is_light)
         return testing::run_golden(testing::make_light_model(session.ni, session.nj, session.nk), session.ticks,
                                    session.integrator, options);

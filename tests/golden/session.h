@@ -82,6 +82,13 @@ inline Inputs two_hands_inputs(int tick) {
   return inputs;
 }
 
+/// As golden_inputs(), but the scalpel cuts with its edge ahead, so that its flanks are in the cut.
+inline Inputs wedge_inputs(int tick) {
+  Inputs inputs = golden_inputs(tick);
+  if (tick >= 200) inputs.world_from_tool = {0.70710678118654757, 0, 0, 0.70710678118654757};  // 90 degrees about z
+  return inputs;
+}
+
 /// Results of a golden session.
 struct GoldenRun {
   std::array<std::uint64_t, 4> hash{};  ///< of State after each quarter
