@@ -1,4 +1,4 @@
-import { CallFailed, type Drawing, type Problem, readBinary, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
+import { CallFailed, type Drawing, kOtherVersion, kSubprotocol, type Problem, readBinary, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
 
 export type Binary = Triangles | WaitingFrame | Shapes | Spheres | Drawing;
 
@@ -31,14 +31,15 @@ export class Connection {
   private next = 1;
   onUnreadable: (problem: string) => void = () => {}; // a message that was left out
 
-  constructor(private readonly token: string, onOpen: () => void, onClose: () => void) {
-    this.socket = new WebSocket(`${location.protocol.replace("http", "ws")}//${location.host}/socket`, ["ctpm.studio.1", `token.${token}`]);
+  /** `onClose` gets the program's words if it speaks another version of the protocol. */
+  constructor(private readonly token: string, onOpen: () => void, onClose: (otherVersion: string) => void) {
+    this.socket = new WebSocket(`${location.protocol.replace("http", "ws")}//${location.host}/socket`, [kSubprotocol, `token.${token}`]);
     this.socket.binaryType = "arraybuffer";
     this.socket.onopen = onOpen;
-    this.socket.onclose = () => {
+    this.socket.onclose = ({ code, reason }) => {
       for (const call of this.calls.values()) call.failed(new Error("the studio has ended"));
       this.calls.clear();
-      onClose();
+      onClose(code === kOtherVersion ? reason : "");
     };
     this.socket.onmessage = (message) => this.take(message.data as string | ArrayBuffer);
   }
