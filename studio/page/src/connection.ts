@@ -26,6 +26,7 @@ export interface CallOptions {
 export class Connection {
   private readonly socket: WebSocket;
   private readonly calls = new Map<number, Running>();
+  private readonly turns = new Map<number, Promise<unknown>>(); // the last call of each stage
   private readonly stages = new Map<number, (message: Binary) => void>();
   private readonly events = new Map<string, (content: unknown) => void>();
   private next = 1;
@@ -55,6 +56,15 @@ export class Connection {
   }
 
   /** A message that has no answer. */
+  /** The same for what opens and closes a stage, one after the other: the program runs calls side by side. `isWanted` is
+      asked when it is the call's turn; null: it was not. */
+  callInTurn<T>(stage: number, name: string, params: object, isWanted: () => boolean = () => true): Promise<T | null> {
+    const go = async () => (isWanted() ? this.call<T>(name, { ...params, stage }) : null);
+    const turn = (this.turns.get(stage) ?? Promise.resolve()).then(go, go);
+    this.turns.set(stage, turn);
+    return turn;
+  }
+
   send(message: object): void {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
