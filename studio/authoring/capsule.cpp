@@ -7,6 +7,7 @@
 #include "core/network/tissue_cells.h"
 #include "importers/topology.h"
 #include "scenes/presets.h"
+#include "studio/authoring/scene_parts.h"
 
 namespace ctpm::authoring {
 namespace {
@@ -48,7 +49,7 @@ std::optional<Tension> tension_of(const scenes::MaterialSpec& material, const Fi
   // Without the tissue inside, the organ would become smaller by this.
   const double smaller = tension.strain * outer / all, size = 1 - smaller;
   tension.inside = rounded(1 - 1 / size);
-  tension.capsule.to_depth = depth, tension.capsule.material = material;
+  tension.capsule.to_depth = whole_nanometres(depth), tension.capsule.material = material;
   tension.capsule.material.fitted_for.reset();
   tension.capsule.material.prestrain = rounded(1 - (1 - tension.strain) / size);
   if (!(*tension.capsule.material.prestrain > 0)) return {};

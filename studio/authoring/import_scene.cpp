@@ -54,10 +54,20 @@ struct Draft {
   }
 };
 
+/// With lengths as their author wrote them: millimetres become metres with an error in the last place, and the scene
+/// would show it.
+ImportRequest as_written(ImportRequest request) {
+  for (std::optional<double>* length : {&request.sphere_radius, &request.gap, &request.largest_hole})
+    if (*length) **length = whole_nanometres(**length);
+  for (LayerWish& layer : request.layers) layer.to_depth = whole_nanometres(layer.to_depth);
+  for (double* x : {&request.at.x, &request.at.y, &request.at.z}) *x = whole_nanometres(*x);
+  return request;
+}
+
 class Import {
  public:
   explicit Import(const ImportRequest& request)
-      : request_(request), place_(fs::path(request.scene).parent_path().string()) {}
+      : request_(as_written(request)), place_(fs::path(request.scene).parent_path().string()) {}
 
   Result<ImportOutcome> run() {
     if (Errors errors = check_files(); !errors.empty()) return errors;
@@ -252,7 +262,9 @@ class Import {
       }
       const bool is_alone = filled.size() == 1 && !request_.into;
       const std::string apart = file_name_of(is_one_of_file ? part_name : from_mesh);
-      draft.part.name = free_name(is_alone ? name_alone(request_.organ, stem_) : apart, names);
+      // What its author says that it is goes before what its file is called.
+      const std::string said = name_alone(request_.organ, is_alone ? stem_ : apart);
+      draft.part.name = free_name(is_one_of_file ? apart : said, names);
       names.push_back(draft.part.name);
       const std::string mesh = (is_alone ? stem_ : stem_ + "-" + file_name_of(draft.part.name)) + ".obj";
       draft.part.mesh_file = beside(mesh);
@@ -484,7 +496,7 @@ class Import {
     return errors;
   }
 
-  const ImportRequest& request_;
+  const ImportRequest request_;
   std::string place_, stem_;
   NewFolder folder_;
   loading::LoadedScene present_;  ///< to which organs are added; empty: a new scene

@@ -27,7 +27,7 @@ Box box_of(std::span<const FilledOrgan> organs) {
 /// Up to the next of 1, 1.5, 2, 2.5 ... in the place of the second digit.
 double rounded_up(double length) {
   const double step = 0.5 * std::pow(10.0, std::floor(std::log10(length)));
-  return std::ceil(length / step - 1e-9) * step;
+  return whole_nanometres(std::ceil(length / step - 1e-9) * step);
 }
 
 /// To a millimetre, or to a tenth of one near something small: the number that an author would write.
@@ -43,8 +43,7 @@ scenes::OrganSpec organ_spec(const std::string& name, const std::string& mesh, c
   scenes::OrganSpec spec;
   spec.name = name, spec.mesh = mesh;
   spec.fill.radius = filled.sphere_radius;
-  // Without what subtracting leaves behind: an author reads it.
-  spec.fill.gap = std::round(1e9 * (filled.spacing - 2 * filled.sphere_radius)) / 1e9;
+  spec.fill.gap = whole_nanometres(filled.spacing - 2 * filled.sphere_radius);
   spec.material = tissue.material;
   spec.damage_depth = tissue.preset->damage_depth;
   const render::OrganLook look = render::look_of(tissue.preset->organ);
@@ -110,14 +109,16 @@ double overlap(const FilledOrgan& organ, const FilledOrgan& other) {
   return organ.centre.empty() ? 0 : double(within) / double(organ.centre.size());
 }
 
+double whole_nanometres(double length) { return std::round(1e9 * length) / 1e9; }
+
 std::string file_name_of(const std::string& name) {
   std::string safe;
   for (const char c : name) safe += std::isalnum((unsigned char)c) || c == '-' || c == '_' ? c : '-';
   return safe.substr(0, 60);
 }
 
-std::string name_alone(const std::string& tissue, const std::string& scene) {
-  return tissue.empty() || tissue == scenes::kGenericPreset ? scene : file_name_of(tissue);
+std::string name_alone(const std::string& tissue, const std::string& other) {
+  return tissue.empty() || tissue == scenes::kGenericPreset ? other : file_name_of(tissue);
 }
 
 std::string free_name(std::string name, const std::vector<std::string>& taken) {

@@ -29,11 +29,14 @@ Vec3 place_beside(const std::vector<FilledOrgan>& present, const std::vector<Fil
 /// The share of an organ's spheres that lie within another organ, by its spheres, in [0, 1].
 double overlap(const FilledOrgan& organ, const FilledOrgan& other);
 
+/// A length as an author writes it, without what arithmetic leaves behind: in whole nanometres [m].
+double whole_nanometres(double length);
+
 /// A name that a file may have everywhere: letters, digits, - and _ of `name`, others as -.
 std::string file_name_of(const std::string& name);
 
-/// What the only organ of a scene is called: what its author says that it is, else as the scene.
-std::string name_alone(const std::string& tissue, const std::string& scene);
+/// What the only organ of a file is called: what its author says that it is, else `other`.
+std::string name_alone(const std::string& tissue, const std::string& other);
 
 /// `name`, with a number behind it if it is taken; never empty.
 std::string free_name(std::string name, const std::vector<std::string>& taken);

@@ -1,7 +1,10 @@
 #include "studio/server/calls.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <iterator>
+#include <string>
 #include <utility>
 
 #include "studio/server/call_table.h"
@@ -33,7 +36,15 @@ void write_entries(output::JsonWriter& json, const char* key, const std::vector<
   json.end_list();
 }
 
-bool is_beside(const std::string& path, const char* ending) { return path.ends_with(ending); }
+/// Whether a JSON file is a scene, or one that is being written: its beginning names the format, or has organs.
+bool is_scene(const std::filesystem::path& path) {
+  constexpr std::size_t kLooked = 64 << 10;  // [bytes]
+  std::string text(kLooked, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(text.data(), std::streamsize(text.size()));
+  text.resize(std::size_t(file.gcount()));
+  return text.find("\"ctpm-scene\"") != std::string::npos || text.find("\"organs\"") != std::string::npos;
+}
 
 }  // namespace
 
@@ -51,11 +62,12 @@ Result<std::string> run_call(const std::string& name, Parameters& parameters, co
 Result<std::string> list_folder(Parameters& parameters, const CallContext& context) {
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
   std::vector<FolderEntry> scenes = context.folder.list(".json");
-  // Scripts, notes and the sidecars of videos are no scenes.
-  std::erase_if(scenes, [](const FolderEntry& entry) {
+  std::erase_if(scenes, [&](const FolderEntry& entry) {
+    // Notes, the sidecars of videos and whatever other programs write; scripts and a schema, which name the same keys.
     for (const char* ending : {".script.json", ".notes.json", ".mp4.json", ".avi.json", "results.json", ".schema.json"})
-      if (is_beside(entry.path, ending)) return true;
-    return entry.path.starts_with("scripts/") || entry.path.find("/scripts/") != std::string::npos;
+      if (entry.path.ends_with(ending)) return true;
+    const bool is_script = entry.path.starts_with("scripts/") || entry.path.find("/scripts/") != std::string::npos;
+    return is_script || !is_scene(context.folder.root() / entry.path);
   });
   output::JsonWriter json;
   json.begin_object().member("folder", context.folder.root().string());

@@ -7,6 +7,7 @@
 
 #include "studio/server/calls.h"
 #include "studio/server/page.h"
+#include "studio/server/subprotocol.h"
 #include "studio/server/text.h"
 #include "studio/server/web_client.h"
 
@@ -32,8 +33,14 @@ std::string token_of(const http::request<http::empty_body>& request) {
   return offered.substr(from, offered.find_first_of(", ", from) - from);
 }
 
-bool offers_subprotocol(const http::request<http::empty_body>& request) {
-  return http::token_list(request[http::field::sec_websocket_protocol]).exists(kSubprotocol);
+/// The subprotocol that a client offers: this program's version, if it is among them. Empty: none of any version.
+std::string subprotocol_of(const http::request<http::empty_body>& request) {
+  std::string other;
+  for (const auto& name : http::token_list(request[http::field::sec_websocket_protocol])) {
+    if (view_of(name) == kSubprotocol) return std::string(kSubprotocol);
+    if (is_subprotocol(view_of(name))) other = view_of(name);
+  }
+  return other;
 }
 
 Knock knock_of(const http::request<http::empty_body>& request, const std::string& token) {
@@ -92,9 +99,10 @@ void HttpConnection::take_head() {
     return refuse(http::status::forbidden, why);
   if (is_socket) {
     if (target != "/socket") return refuse(http::status::not_found, "there is nothing at " + target);
-    if (!offers_subprotocol(request))
-      return refuse(http::status::bad_request, std::string("the WebSocket protocol must be ") + kSubprotocol);
-    return std::make_shared<WebClient>(services_, std::move(stream_), std::move(counted_))->start(request);
+    const std::string offered = subprotocol_of(request);
+    if (offered.empty())
+      return refuse(http::status::bad_request, "the WebSocket protocol must be " + std::string(kSubprotocol));
+    return std::make_shared<WebClient>(services_, std::move(stream_), std::move(counted_))->start(request, offered);
   }
   const std::optional<std::string> upload = upload_name(target);
   if (upload && request.method() == http::verb::put) return take_upload(*upload);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "studio/server/calls.h"
+#include "studio/server/subprotocol.h"
 #include "studio/server/text.h"
 
 namespace ctpm::server {
@@ -26,27 +27,37 @@ HandMove move_of(Parameters& hand) {
 WebClient::WebClient(Services& services, beast::tcp_stream stream, std::shared_ptr<CountedConnection> counted)
     : services_(services), counted_(std::move(counted)), socket_(std::move(stream)) {}
 
-void WebClient::start(const beast::http::request<beast::http::empty_body>& request) {
+void WebClient::start(const beast::http::request<beast::http::empty_body>& request, const std::string& offered) {
   beast::get_lowest_layer(socket_).expires_never();
   websocket::stream_base::timeout timeout{};
   timeout.handshake_timeout = services_.limits.handshake;
   timeout.idle_timeout = std::chrono::seconds(120);  // pings keep a quiet page
   timeout.keep_alive_pings = true;
   socket_.set_option(timeout);
-  socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
-    response.set(beast::http::field::sec_websocket_protocol, kSubprotocol);
+  socket_.set_option(websocket::stream_base::decorator([offered](websocket::response_type& response) {
+    response.set(beast::http::field::sec_websocket_protocol, offered);
   }));
   socket_.read_message_max(services_.limits.most_message);
   socket_.auto_fragment(false);
-  desk_ = std::make_shared<Desk>(shared_from_this());
   services_.clients[this] = [this] { close(); };
   auto kept = std::make_shared<beast::http::request<beast::http::empty_body>>(request);
-  socket_.async_accept(*kept, [self = shared_from_this(), kept](beast::error_code failure) {
-    if (failure) return self->close();
-    self->is_open_ = true;
-    self->read_next();
-    self->write_next();
+  socket_.async_accept(*kept, [self = shared_from_this(), kept, offered](beast::error_code failure) {
+    if (failure || self->is_closed_) return self->close();
+    if (offered != kSubprotocol) return self->part_from(offered);
+    self->begin();
   });
+}
+
+void WebClient::begin() {
+  desk_ = std::make_shared<Desk>(shared_from_this());
+  is_open_ = true;
+  read_next();
+  write_next();
+}
+
+void WebClient::part_from(const std::string& offered) {
+  const websocket::close_reason why(websocket::close_code(kOtherVersion), other_version_text(offered));
+  socket_.async_close(why, [self = shared_from_this()](beast::error_code) { self->close(); });
 }
 
 void WebClient::read_next() {

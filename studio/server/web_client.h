@@ -18,16 +18,14 @@
 
 namespace ctpm::server {
 
-/// Name of the WebSocket subprotocol, with its version. The token follows as a second one: "token.HEX".
-inline constexpr const char* kSubprotocol = "ctpm.studio.1";
-
 /// A page's WebSocket. It lives as long as the connection, and until what the page has open was closed.
 class WebClient : public Outbox, public std::enable_shared_from_this<WebClient> {
  public:
   WebClient(Services& services, boost::beast::tcp_stream stream, std::shared_ptr<CountedConnection> counted);
 
-  /// Answers the handshake, which was let in, and serves the page from then on.
-  void start(const boost::beast::http::request<boost::beast::http::empty_body>& request);
+  /// Answers the handshake, which was let in, and serves the page from then on. A page that `offered` another version
+  /// of the protocol is told so, and nothing else: browsers hide from pages why a handshake was refused.
+  void start(const boost::beast::http::request<boost::beast::http::empty_body>& request, const std::string& offered);
 
   void send(std::string text) override;
   void send_bytes(std::string bytes) override;
@@ -45,6 +43,8 @@ class WebClient : public Outbox, public std::enable_shared_from_this<WebClient> 
     std::uint32_t sent_topology = 0;  ///< 0: none
   };
 
+  void begin();
+  void part_from(const std::string& offered);
   void read_next();
   void take(const std::string& text);
   void take_call(Parameters& message);

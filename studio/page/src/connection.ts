@@ -1,4 +1,4 @@
-import { CallFailed, type Drawing, type Problem, readBinary, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
+import { CallFailed, type Drawing, kOtherVersion, kSubprotocol, type Problem, readBinary, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
 
 export type Binary = Triangles | WaitingFrame | Shapes | Spheres | Drawing;
 
@@ -26,19 +26,21 @@ export interface CallOptions {
 export class Connection {
   private readonly socket: WebSocket;
   private readonly calls = new Map<number, Running>();
+  private readonly turns = new Map<number, Promise<unknown>>(); // the last call of each stage
   private readonly stages = new Map<number, (message: Binary) => void>();
   private readonly events = new Map<string, (content: unknown) => void>();
   private next = 1;
   onUnreadable: (problem: string) => void = () => {}; // a message that was left out
 
-  constructor(private readonly token: string, onOpen: () => void, onClose: () => void) {
-    this.socket = new WebSocket(`${location.protocol.replace("http", "ws")}//${location.host}/socket`, ["ctpm.studio.1", `token.${token}`]);
+  /** `onClose` gets the program's words if it speaks another version of the protocol. */
+  constructor(private readonly token: string, onOpen: () => void, onClose: (otherVersion: string) => void) {
+    this.socket = new WebSocket(`${location.protocol.replace("http", "ws")}//${location.host}/socket`, [kSubprotocol, `token.${token}`]);
     this.socket.binaryType = "arraybuffer";
     this.socket.onopen = onOpen;
-    this.socket.onclose = () => {
+    this.socket.onclose = ({ code, reason }) => {
       for (const call of this.calls.values()) call.failed(new Error("the studio has ended"));
       this.calls.clear();
-      onClose();
+      onClose(code === kOtherVersion ? reason : "");
     };
     this.socket.onmessage = (message) => this.take(message.data as string | ArrayBuffer);
   }
@@ -54,6 +56,15 @@ export class Connection {
   }
 
   /** A message that has no answer. */
+  /** The same for what opens and closes a stage, one after the other: the program runs calls side by side. `isWanted` is
+      asked when it is the call's turn; null: it was not. */
+  callInTurn<T>(stage: number, name: string, params: object, isWanted: () => boolean = () => true): Promise<T | null> {
+    const go = async () => (isWanted() ? this.call<T>(name, { ...params, stage }) : null);
+    const turn = (this.turns.get(stage) ?? Promise.resolve()).then(go, go);
+    this.turns.set(stage, turn);
+    return turn;
+  }
+
   send(message: object): void {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }

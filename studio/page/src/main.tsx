@@ -25,7 +25,7 @@ const kAskAgain = 2000; // whether the program is back [ms]
 
 function App() {
   const [connection, setConnection] = useState<Connection | null>(null);
-  const [isClosed, setClosed] = useState(false), [unreadable, setUnreadable] = useState("");
+  const [isClosed, setClosed] = useState(false), [otherVersion, setOtherVersion] = useState(""), [unreadable, setUnreadable] = useState("");
   const [listing, setListing] = useState<Listing | null>(null);
   const [room, setRoom] = useState<Room>(start.room);
 
@@ -37,10 +37,11 @@ function App() {
       const made: Connection = new Connection(token, () => {
         setConnection(made);
         setClosed(false);
-      }, () => {
+      }, (differs) => {
         if (newest !== made) return;
         setClosed(true);
-        timer = setTimeout(connect, kAskAgain);
+        setOtherVersion(differs);
+        if (!differs) timer = setTimeout(connect, kAskAgain); // a program of this page's version has another token
       });
       made.onUnreadable = setUnreadable;
       newest = made;
@@ -79,7 +80,12 @@ function App() {
         </div>
       )}
       <main>
-        {isClosed ? (
+        {isClosed && otherVersion ? (
+          <Empty title="The program was updated">
+            <p>This page was loaded from another version of it: {otherVersion}. Scenes that were not saved are kept as drafts.</p>
+            <p><button type="button" class="main" onClick={() => location.reload()}>Load the page again</button></p>
+          </Empty>
+        ) : isClosed ? (
           <Empty title={connection ? "The studio has ended" : "This address is of another run"}>
             <p>{connection ? "Start it again" : "Open the address that the program printed, or start it"}: <code>ctpm studio</code>. Where its address is opened, here or in
               another tab, this page goes on. Scenes that were not saved are kept as drafts, and a session that was being recorded is there up to its last whole second: <code>ctpm recover</code></p>

@@ -6,10 +6,19 @@ function linear(c: number): number {
   return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
 }
 
+/** Of the outside of an organ, and of the walls of its cuts. They outlive its triangles: the browser would compile them
+    again for each cut, which takes longer than everything else in a picture. */
+export function organMaterials(look: OrganView): three.MeshPhongMaterial[] {
+  const shine = 0.04 + 0.09 * look.wetness;
+  const material = (side: three.Side) =>
+    new three.MeshPhongMaterial({ vertexColors: true, shininess: 34, specular: new three.Color(shine, shine, shine), side });
+  // As in videos, what faces away is seen of the walls of cuts alone.
+  return [material(three.FrontSide), material(three.DoubleSide)];
+}
+
 /** The moving surface of one organ, with the walls of its cuts. */
 export class OrganMesh {
   readonly mesh: three.Mesh;
-  private readonly materials: three.MeshPhongMaterial[]; // of the outside, and of the walls of cuts
   private readonly position: Float32Array;
   private readonly normal: Float32Array;
   private readonly index: Uint32Array; // all triangles
@@ -19,22 +28,18 @@ export class OrganMesh {
   private drawsAll = true;
   private isColoured = false;
 
-  constructor(private readonly triangles: OrganTriangles, private readonly look: OrganView) {
+  /** `materials`: those of organMaterials(), which are the caller's. */
+  constructor(private readonly triangles: OrganTriangles, private readonly look: OrganView, private readonly materials: three.MeshPhongMaterial[]) {
     this.index = triangles.index;
     this.position = new Float32Array(3 * triangles.vertexCount);
     this.normal = new Float32Array(3 * triangles.vertexCount);
     this.facing = this.index.slice();
     const geometry = this.geometryOf(this.facing, three.DynamicDrawUsage);
     geometry.setAttribute("color", new three.BufferAttribute(new Float32Array(3 * triangles.vertexCount), 3));
-    const shine = 0.04 + 0.09 * look.wetness;
-    const material = (side: three.Side) =>
-      new three.MeshPhongMaterial({ vertexColors: true, shininess: 34, specular: new three.Color(shine, shine, shine), side });
-    // As in videos, what faces away is seen of the walls of cuts alone.
     const outer = 3 * triangles.outerTriangleCount;
     geometry.addGroup(0, outer, 0);
     if (outer < this.index.length) geometry.addGroup(outer, this.index.length - outer, 1);
-    this.materials = [material(three.FrontSide), material(three.DoubleSide)];
-    this.mesh = new three.Mesh(geometry, this.materials);
+    this.mesh = new three.Mesh(geometry, materials);
     this.mesh.frustumCulled = false;
     this.whole = new three.Mesh(this.geometryOf(this.index), new three.MeshBasicMaterial({ side: three.DoubleSide }));
   }
@@ -67,6 +72,7 @@ export class OrganMesh {
   /** 0: not drawn, 1: not transparent. */
   setOpacity(opacity: number): void {
     this.mesh.visible = opacity > 0;
+    if (this.materials[0].opacity === opacity) return;
     for (const material of this.materials) {
       material.opacity = opacity;
       material.transparent = opacity < 1;
@@ -126,7 +132,6 @@ export class OrganMesh {
 
   dispose(): void {
     this.mesh.geometry.dispose(), this.whole.geometry.dispose();
-    for (const material of this.materials) material.dispose();
   }
 
   /** Normals of the vertices: the sum over their triangles, weighted by area. */

@@ -39,6 +39,8 @@ export class Player {
   onChange: () => void = () => {};
   onTime: () => void = () => {};
   onDrawing: (stage: number, drawing: Drawing | null) => void = () => {}; // to show in place of the scene; null: the scene
+  onFailure: (error: Error) => void = () => {};
+  private readonly openings = new Map<number, number>(); // of each stage so far
   private readonly drawings = new Map<number, Drawing>(); // newest of each stage
   private readonly asked = new Map<number, number>(); // newest request of each stage
   private readonly unseen = new Set<number>(); // stages of which it has no picture yet
@@ -56,34 +58,74 @@ export class Player {
     for (const stage of [0, 1]) connection.onStage(stage, (message) => this.take(stage, message));
   }
 
-  async open(stage: number, path: string): Promise<Track> {
-    this.close(stage);
-    const connection = this.connection;
-    const session = await connection.call<OpenedSession>("session.open", { path, stage });
+  /** Opens the session beside. */
+  async openBeside(path: string): Promise<void> {
+    if (!(await this.load(1, path))) return;
+    this.move(this.time);
+    this.onChange();
+  }
+
+  /** Opens what a place names, at its moment: both sessions at once, and no picture of another moment is asked for. */
+  async openAt({ session, beside, ahead, time, besideTime, comparison }: Place): Promise<void> {
+    if (session === undefined) return;
+    if (beside === undefined) this.close(1);
+    else this.drop(1); // nothing of it is to be seen beside the new one
+    const [first, second] = await Promise.allSettled([this.load(0, session), beside === undefined ? null : this.load(1, beside)]);
+    if (first.status === "rejected") this.close(1);
+    else if (!first.value) return; // another one was opened meanwhile
+    else {
+      this.path = null, this.aligned = "";
+      const hasBoth = second.status === "fulfilled" && second.value;
+      if (hasBoth && ahead !== undefined) this.offset = ahead;
+      else if (!hasBoth || !this.bringTogether("contact begins")) this.offset = 0;
+      if (hasBoth && besideTime !== undefined && comparison) this.moveBeside(besideTime, comparison);
+      else this.move(time ?? 0);
+    }
+    this.onChange();
+    for (const one of [first, second]) if (one.status === "rejected") throw one.reason;
+  }
+
+  /** Null: another session was opened as that stage meanwhile. Its curves come when they are there. */
+  private async load(stage: number, path: string): Promise<Track | null> {
+    this.drop(stage);
+    const opening = this.openings.get(stage), isWanted = () => this.openings.get(stage) === opening;
+    const session = await this.connection.callInTurn<OpenedSession>(stage, "session.open", { path }, isWanted);
+    if (!session || !isWanted()) return null;
     const track: Track = { stage, session, timeline: null, scene: new StageScene(session.view) };
     const tools = this.tools.get(stage); // they come before the answer
     if (tools) track.scene.setShapes(tools);
     track.scene.onFrame = (frame) => this.drew(stage, frame);
     this.tracks.set(stage, track);
     this.viewer.set(stage, track.scene);
-    if (stage === 0) {
-      this.time = 0;
-      const camera = firstCamera(session.view);
-      if (camera) this.viewer.look(camera);
-    }
-    this.move(this.time); // the picture comes before the curves
-    track.timeline = await connection.call<TimelineData>("session.timeline", { path, points: kTimelinePoints });
+    const camera = stage === 0 && firstCamera(session.view);
+    if (camera) this.viewer.look(camera);
+    void this.addCurves(track);
     return track;
   }
 
+  private async addCurves(track: Track): Promise<void> {
+    try {
+      track.timeline = await this.connection.call<TimelineData>("session.timeline", { path: track.session.path, points: kTimelinePoints });
+      if (this.tracks.get(track.stage) === track) this.onChange();
+    } catch (failure) {
+      if (this.tracks.get(track.stage) === track) this.onFailure(failure as Error);
+    }
+  }
+
   close(stage: number): void {
+    this.drop(stage);
+    this.connection.callInTurn(stage, "session.close", {}).catch(() => {});
+  }
+
+  /** Shows no session there any more; what the program has open it closes when it opens another one. */
+  private drop(stage: number): void {
+    this.openings.set(stage, (this.openings.get(stage) ?? 0) + 1); // one that is on its way comes too late
     if (!this.tracks.delete(stage)) return;
     this.waiting.delete(stage), this.unseen.delete(stage), this.asked.delete(stage), this.drawings.delete(stage);
     this.goOn();
     if (stage === 1) this.path = null;
     this.viewer.isCovered = false;
     this.viewer.set(stage, null);
-    this.connection.call("session.close", { stage }).catch(() => {});
     this.onChange();
   }
 
@@ -176,13 +218,19 @@ export class Player {
 
   /** Aligns both sessions where an event of that kind first happened. Null: one of them has none. */
   alignAt(kind: string): number | null {
+    if (!this.bringTogether(kind)) return null;
+    this.move(this.time);
+    this.onChange();
+    return firstOf(this.tracks.get(0)!.session.info, kind);
+  }
+
+  /** The same, without a move. */
+  private bringTogether(kind: string): boolean {
     const first = this.tracks.get(0), second = this.tracks.get(1);
     const here = first ? firstOf(first.session.info, kind) : null, there = second ? firstOf(second.session.info, kind) : null;
-    if (here === null || there === null) return null;
-    this.setOffset(there - here);
-    this.aligned = kind;
-    this.onChange();
-    return here;
+    if (here === null || there === null) return false;
+    this.offset = there - here, this.path = null, this.aligned = kind;
+    return true;
   }
 
   /** Moves to a time of the session beside. Where the first one has nothing that belongs to it, both are brought together

@@ -1,5 +1,8 @@
 // The messages of studio/server/PROTOCOL.md. Lengths in metres, forces in newtons, times in seconds.
 
+export const kSubprotocol = "ctpm.studio.2"; // with the version of the protocol
+export const kOtherVersion = 4001; // the code of a WebSocket that the program closes because it speaks another version
+
 export type Vector = [number, number, number];
 
 export interface Problem {

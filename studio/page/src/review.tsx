@@ -44,6 +44,7 @@ export function Review({ connection, listing, place, onPlace }: {
     if (!canvas.current) return;
     const viewer = new Viewer(canvas.current);
     const made = new Player(connection, viewer);
+    made.onFailure = setError;
     made.onChange = () => setVersion((v) => v + 1);
     made.onDrawing = (stage, drawing) => drawn[stage].current && drawInto(drawn[stage].current!, drawing);
     let wanted = false;
@@ -69,19 +70,23 @@ export function Review({ connection, listing, place, onPlace }: {
     };
   }, [connection]);
 
-  const open = useCallback(async (stage: number, path: string | undefined) => {
+  const openAt = useCallback(async (there: Place) => {
+    if (!player) return;
+    setError(null);
+    setComparison(null);
+    await player.openAt(there).catch(setError);
+  }, [player]);
+  /** The session beside; undefined: none. */
+  const openBeside = useCallback(async (path: string | undefined) => {
     if (!player) return;
     setError(null);
     setComparison(null);
     try {
-      if (path === undefined) {
-        player.close(stage);
+      if (path !== undefined) await player.openBeside(path);
+      else {
+        player.close(1);
         player.setOffset(0);
-        return;
       }
-      if (stage === 0) player.close(1);
-      await player.open(stage, path);
-      setVersion((v) => v + 1);
     } catch (failure) {
       setError(failure as Error);
     }
@@ -92,25 +97,16 @@ export function Review({ connection, listing, place, onPlace }: {
     if (!player || !first || !second) return;
     const [expert, trainee] = [first, second].map(({ session }) => session.path), { aligned } = player;
     const beside = player.timeOf(1), ahead = beside - player.time;
-    await open(0, trainee);
-    await open(1, expert);
-    player.setOffset(-ahead);
+    await openAt({ session: trainee, beside: expert, ahead: -ahead, time: beside });
     player.aligned = aligned === "path" ? "" : aligned; // a path is of the comparison before
-    player.move(beside);
+    setVersion((v) => v + 1);
   };
 
   // The address names a session and a moment: a link leads there.
   useEffect(() => {
     if (!player || !place.session || player.tracks.get(0)?.session.path === place.session) return;
-    void (async () => {
-      await open(0, place.session);
-      if (place.beside) await open(1, place.beside);
-      if (place.beside && place.ahead !== undefined) player.setOffset(place.ahead);
-      else if (place.beside) player.alignAt("contact begins");
-      if (place.comparison) setComparison(place.comparison), setPanel("compare");
-      if (place.comparison && place.besideTime !== undefined) player.moveBeside(place.besideTime, place.comparison);
-      else if (place.time !== undefined) player.move(place.time);
-    })();
+    void openAt(place);
+    if (place.comparison) setComparison(place.comparison), setPanel("compare");
   }, [player]);
 
   const first = player?.tracks.get(0), second = player?.tracks.get(1);
@@ -183,7 +179,7 @@ export function Review({ connection, listing, place, onPlace }: {
         <ul>
           {listing.sessions.map((entry) => (
             <li key={entry.path}>
-              <button type="button" aria-current={first?.session.path === entry.path} title={entry.path} onClick={() => void open(0, entry.path)}>
+              <button type="button" aria-current={first?.session.path === entry.path} title={entry.path} onClick={() => void openAt({ session: entry.path })}>
                 <span>{entry.path.replace(/\.ctpm$/, "")}</span>
                 <small>{bytes(entry.bytes)}</small>
               </button>
@@ -254,7 +250,7 @@ export function Review({ connection, listing, place, onPlace }: {
               {panel === "moment" && <Moment connection={connection} player={player} frame={frame} other={other} />}
               {panel === "compare" && (
                 <Compare connection={connection} player={player} listing={listing} comparison={comparison} onComparison={setComparison}
-                  onBeside={(path) => open(1, path)} onSwap={() => void swap()} />
+                  onBeside={openBeside} onSwap={() => void swap()} />
               )}
               {panel === "notes" && <NotesPanel connection={connection} player={player} onNotes={(list, stage) => setNotes({ list, stage })} />}
               {panel === "export" && <ExportForm key={first.session.path} connection={connection} player={player} look={look} />}

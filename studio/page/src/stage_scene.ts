@@ -1,7 +1,7 @@
 import * as three from "three";
 import { type Frame, type HandFrame, type OrganSpheres, readWaitingFrame, type SceneView, type Shapes, type Spheres, type ToolShape, type Triangles, type Vector, type WaitingFrame } from "./protocol";
 import type { OrganPose } from "./items";
-import { OrganMesh } from "./organ_mesh";
+import { OrganMesh, organMaterials } from "./organ_mesh";
 
 const kArrowPerNewton = 0.007; // [m/N]
 const kLongestArrow = 0.06; // [m]
@@ -19,6 +19,7 @@ export class StageScene {
   onFrame: (frame: Frame) => void = () => {};
   private waiting: WaitingFrame | null = null;
   private organs: OrganMesh[] = [];
+  private readonly materials: three.MeshPhongMaterial[][]; // of each organ
   private topology = -1;
   private next: Triangles | null = null; // until their first frame is drawn
   private tools: three.Mesh[] = [];
@@ -30,6 +31,7 @@ export class StageScene {
   private ghost: three.Mesh | null = null;
 
   constructor(readonly view: SceneView) {
+    this.materials = view.organs.map(organMaterials);
     this.scene.add(new three.HemisphereLight(0xdfe8ff, 0x3a2e2a, 1.5), ...this.arrows);
     for (const arrow of this.arrows) arrow.visible = false;
   }
@@ -98,7 +100,7 @@ export class StageScene {
 
   private useTriangles(triangles: Triangles): void {
     for (const organ of this.organs) this.scene.remove(organ.mesh), organ.dispose();
-    this.organs = triangles.organs.slice(0, this.view.organs.length).map((organ, i) => new OrganMesh(organ, this.view.organs[i]));
+    this.organs = triangles.organs.slice(0, this.view.organs.length).map((organ, i) => new OrganMesh(organ, this.view.organs[i], this.materials[i]));
     for (const organ of this.organs) this.scene.add(organ.mesh);
     this.topology = triangles.topology;
     this.next = null;
@@ -168,6 +170,7 @@ export class StageScene {
 
   dispose(): void {
     for (const organ of this.organs) organ.dispose();
+    for (const material of this.materials.flat()) material.dispose();
     for (const mesh of [...this.tools, ...this.obstacles, ...this.spheres]) mesh.geometry.dispose();
   }
 }

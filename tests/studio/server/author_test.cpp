@@ -46,6 +46,25 @@ const std::string* last_of(const std::vector<std::string>& messages, std::uint32
   return found;
 }
 
+TEST_F(AuthorTest, OnlyScenesAreListedAsScenes) {
+  const auto write = [&](const char* name, const std::string& content) {
+    std::ofstream(folder_.path() / name) << content;
+  };
+  write("empty.json", "{}");
+  write("nothing.json", "");
+  write("settings.json", R"({"name": "of another program", "list": [1, 2]})");
+  write("script.json", R"({"format": "ctpm-script", "version": 1, "steps": []})");
+  write("kidney.script.json", R"({"format": "ctpm-script", "version": 1, "steps": []})");
+  write("broken.json", R"({"format": "ctpm-scene", "version": 1, )");  // its author mends it here
+  write("begun.json", R"({"organs": []})");
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  std::vector<std::string> listed;
+  const nlohmann::json answer = client.call("folder.list", nlohmann::json::object());
+  for (const auto& entry : answer["result"]["scenes"]) listed.push_back(entry["path"]);
+  EXPECT_EQ(listed, (std::vector<std::string>{"begun.json", "broken.json", "kidney.json"}));
+}
+
 TEST_F(AuthorTest, TheTextOfAnAuthorIsShownBeforeItIsSaved) {
   const Serving serving(folder_.path());
   SocketClient client(serving);

@@ -21,6 +21,7 @@ using testing::Serving;
 using testing::SocketClient;
 using testing::status_of;
 
+const std::string kProtocol(server::kSubprotocol);
 const std::string kList = R"({"id": 1, "call": "folder.list", "params": {}})";
 
 class Safety : public ::testing::Test {
@@ -124,7 +125,7 @@ TEST_F(Safety, AnotherHostIsRefused) {
                                                    std::to_string(kList.size()) + "\r\n\r\n" + kList),
                    403);
     expect_refused(
-        response_to(serving.port(), handshake(host, "http://" + host, "ctpm.studio.1, token." + serving.token())), 403);
+        response_to(serving.port(), handshake(host, "http://" + host, kProtocol + ", token." + serving.token())), 403);
   }
   expect_refused(response_to(serving.port(), "GET / HTTP/1.1\r\n\r\n"), 403);
   for (const char* own : {"localhost", "127.0.0.1", "[::1]"})
@@ -147,7 +148,7 @@ TEST_F(Safety, AnotherPageIsRefused) {
     expect_refused(response_to(serving.port(), "PUT /upload/x.stl HTTP/1.1\r\n" + lines + "Content-Length: 1\r\n\r\nx"),
                    403);
     expect_refused(
-        response_to(serving.port(), handshake(serving.host(), origin, "ctpm.studio.1, token." + serving.token())), 403);
+        response_to(serving.port(), handshake(serving.host(), origin, kProtocol + ", token." + serving.token())), 403);
     // The question that a browser asks before it sends anything unusual for another page.
     expect_refused(response_to(serving.port(), "OPTIONS /call HTTP/1.1\r\n" + lines +
                                                    "Access-Control-Request-Method: POST\r\n"
@@ -174,9 +175,31 @@ TEST_F(Safety, WithoutTheTokenNothingIsDone) {
                    403);
   }
   expect_refused(response_to(serving.port(), serving.head("GET /call?token=" + serving.token())), 403);
-  for (const std::string& protocol : {std::string(), std::string("ctpm.studio.1"), "ctpm.studio.1, token." + almost})
+  for (const std::string& protocol : {std::string(), kProtocol, kProtocol + ", token." + almost})
     expect_refused(response_to(serving.port(), handshake(serving.host(), serving.origin(), protocol)), 403);
   EXPECT_FALSE(fs::exists(folder() / "x.stl"));
+  expect_it_goes_on(serving);
+}
+
+TEST_F(Safety, AClientOfAnotherVersionIsToldBothVersionsAndNothingElse) {
+  const Serving serving(folder());
+  for (const char* other : {"ctpm.studio.1", "ctpm.studio.3", "ctpm.studio.1234"}) {
+    SocketClient client(serving, other);
+    const auto reason = client.reason_of_end();
+    EXPECT_EQ(reason.code, server::kOtherVersion);
+    const std::string text = reason.reason.c_str(), version = std::string(other).substr(12);
+    EXPECT_NE(text.find("this program speaks version 2 of the protocol"), std::string::npos) << text;
+    EXPECT_NE(text.find("its client version " + version + ": load the page again"), std::string::npos) << text;
+  }
+  // Of several versions that a client speaks, the program's is taken.
+  SocketClient client(serving, "ctpm.studio.1, ctpm.studio.2");
+  EXPECT_TRUE(client.call("folder.list", nlohmann::json::object()).contains("result"));
+  // What is no version of it is refused, and another version needs the token too.
+  for (const char* name : {"ctpm.studio.", "ctpm.studio.x", "ctpm.studio.12345", "chat"})
+    expect_refused(response_to(serving.port(), handshake(serving.host(), serving.origin(),
+                                                         std::string(name) + ", token." + serving.token())),
+                   400);
+  expect_refused(response_to(serving.port(), handshake(serving.host(), serving.origin(), "ctpm.studio.1")), 403);
   expect_it_goes_on(serving);
 }
 
@@ -310,7 +333,7 @@ TEST_F(Safety, HugeMessagesAreNotTaken) {
     const std::string first("\x01\xfe\xff\xff\x01\x02\x03\x04", 8), next("\x00\xfe\xff\xff\x01\x02\x03\x04", 8);
     for (const bool is_whole : {true, false}) {
       RawClient client(serving.port());
-      client.send(handshake(serving.host(), serving.origin(), "ctpm.studio.1, token." + serving.token()));
+      client.send(handshake(serving.host(), serving.origin(), kProtocol + ", token." + serving.token()));
       const std::string part(65535, 'x');
       std::size_t sent = 0;
       bool goes_on = client.send(is_whole ? whole : first);

@@ -19,6 +19,7 @@
 #include <thread>
 
 #include "studio/server/server.h"
+#include "studio/server/subprotocol.h"
 #include "tests/studio/commands/run_program.h"
 
 namespace ctpm::testing {
@@ -126,13 +127,14 @@ inline std::string body_of(const std::string& response) {
 /// A page's WebSocket, without the page.
 class SocketClient {
  public:
-  explicit SocketClient(const Serving& serving) : socket_(context_) {
+  explicit SocketClient(const Serving& serving, const std::string& subprotocol = std::string(server::kSubprotocol))
+      : socket_(context_) {
     namespace beast = boost::beast;
     beast::get_lowest_layer(socket_).connect(
         boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4::loopback(), std::uint16_t(serving.port())));
     beast::get_lowest_layer(socket_).socket().set_option(boost::asio::ip::tcp::no_delay(true));  // as browsers do
     socket_.set_option(beast::websocket::stream_base::decorator([&](beast::websocket::request_type& request) {
-      request.set(beast::http::field::sec_websocket_protocol, "ctpm.studio.1, token." + serving.token());
+      request.set(beast::http::field::sec_websocket_protocol, subprotocol + ", token." + serving.token());
       request.set(beast::http::field::origin, serving.origin());
     }));
     socket_.read_message_max(64u << 20);
@@ -152,6 +154,15 @@ class SocketClient {
   void send_bytes(const std::string& bytes) {
     socket_.binary(true);
     socket_.write(boost::asio::buffer(bytes));
+  }
+
+  /// Waits for the end of the connection, before which nothing may come; why the server ended it.
+  boost::beast::websocket::close_reason reason_of_end() {
+    boost::beast::flat_buffer buffer;
+    boost::beast::error_code end;
+    socket_.read(buffer, end);
+    if (end != boost::beast::websocket::error::closed) throw std::runtime_error("the connection did not end");
+    return socket_.reason();
   }
 
   /// The next message; throws when the connection has ended.
