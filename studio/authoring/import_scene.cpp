@@ -12,6 +12,7 @@
 #include "scenes/scene_file.h"
 #include "scenes/script.h"
 #include "studio/authoring/anchor_choice.h"
+#include "studio/authoring/as_written.h"
 #include "studio/authoring/capsule.h"
 #include "studio/authoring/filling_choice.h"
 #include "studio/authoring/fit_stiffness.h"
@@ -53,16 +54,6 @@ struct Draft {
     part.report.findings.push_back({code, 1, {}, std::move(found), std::move(done), std::move(remains)});
   }
 };
-
-/// With lengths as their author wrote them: millimetres become metres with an error in the last place, and the scene
-/// would show it.
-ImportRequest as_written(ImportRequest request) {
-  for (std::optional<double>* length : {&request.sphere_radius, &request.gap, &request.largest_hole})
-    if (*length) **length = whole_nanometres(**length);
-  for (LayerWish& layer : request.layers) layer.to_depth = whole_nanometres(layer.to_depth);
-  for (double* x : {&request.at.x, &request.at.y, &request.at.z}) *x = whole_nanometres(*x);
-  return request;
-}
 
 class Import {
  public:
@@ -262,9 +253,7 @@ class Import {
       }
       const bool is_alone = filled.size() == 1 && !request_.into;
       const std::string apart = file_name_of(is_one_of_file ? part_name : from_mesh);
-      // What its author says that it is goes before what its file is called.
-      const std::string said = name_alone(request_.organ, is_alone ? stem_ : apart);
-      draft.part.name = free_name(is_one_of_file ? apart : said, names);
+      draft.part.name = free_name(is_one_of_file ? apart : name_alone(request_.organ, is_alone ? stem_ : apart), names);
       names.push_back(draft.part.name);
       const std::string mesh = (is_alone ? stem_ : stem_ + "-" + file_name_of(draft.part.name)) + ".obj";
       draft.part.mesh_file = beside(mesh);
@@ -272,8 +261,7 @@ class Import {
       draft.filled = std::move(one.organ), draft.part.report = std::move(one.report);
       draft.spec = organ_spec(draft.part.name, mesh, draft.tissue, draft.filled, colour);
       draft.spec.all_parts = request_.parts == Parts::all_in_one, draft.spec.most_triangles = request_.most_triangles;
-      draft.spec.anchors = request_.anchors;
-      draft.spec.at = draft.part.at = at, draft.spec.turn = request_.turn;
+      draft.spec.anchors = request_.anchors, draft.spec.at = draft.part.at = at, draft.spec.turn = request_.turn;
       if (Errors errors = add_layers(draft); !errors.empty()) return errors;
       if (request_.stiffness_scale) draft.spec.material.stiffness_scale = request_.stiffness_scale;
       if (Errors errors = check_mesh_file(draft.part.mesh_file); !errors.empty()) return errors;
