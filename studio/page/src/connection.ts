@@ -55,7 +55,6 @@ export class Connection {
     });
   }
 
-  /** A message that has no answer. */
   /** The same for what opens and closes a stage, one after the other: the program runs calls side by side. `isWanted` is
       asked when it is the call's turn; null: it was not. */
   callInTurn<T>(stage: number, name: string, params: object, isWanted: () => boolean = () => true): Promise<T | null> {
@@ -65,6 +64,7 @@ export class Connection {
     return turn;
   }
 
+  /** A message that has no answer. */
   send(message: object): void {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
