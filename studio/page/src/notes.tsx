@@ -21,7 +21,10 @@ export function NotesPanel({ connection, player, onNotes }: { connection: Connec
     onNotes(read.notes, stage);
   };
   useEffect(() => {
-    connection.call<Notes>("notes.read", { path }).then(take, setError);
+    let isWanted = true;
+    setNotes(null); // until they are there nothing can be added to them: they were those of the other session
+    connection.call<Notes>("notes.read", { path }).then((read) => isWanted && take(read), (failure) => isWanted && setError(failure));
+    return () => void (isWanted = false);
   }, [path]);
 
   const write = async (list: Note[]) => {
