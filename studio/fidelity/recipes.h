@@ -140,7 +140,8 @@ struct BladeResult {
     std::vector<double> way, force;    ///< [m] from the block's middle, [N] against the way      (tick_count)
     double work = 0;                   ///< of the hand [J]
     double area = 0;                   ///< of the cut [m^2]
-    double lost = 0;                   ///< energy that Kelvin units dissipated, or that severed elements held [J]
+    double viscous = 0;                ///< energy that Kelvin units dissipated [J]
+    double severed = 0;                ///< energy that elements held when they were severed [J]
     double mean = 0;                   ///< force in the middle 30 mm [N]
     double chatter = 0;                ///< of that force about its moving mean over 6 mm, RMS over mean [share]
     double jump = 0;                   ///< its largest change in one tick over the mean [share]

@@ -212,7 +212,7 @@ test("views, cutaway and cameras are those of export", async () => {
     await page.waitForFunction((known) => {
       const canvas = document.querySelector(".drawings canvas");
       return !canvas.hidden && !known.includes(canvas.toDataURL());
-    }, [...seen]).catch(() => assert.fail(`nothing changed: ${what}`));
+    }, [...seen], { timeout: 20000 }).catch(() => assert.fail(`nothing changed: ${what}`));
     await page.waitForTimeout(700); // until the last picture of a turn
     seen.add(await pixels());
   };

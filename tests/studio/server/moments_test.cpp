@@ -13,13 +13,12 @@
 #include "studio/server/moments.h"
 #include "studio/server/spare_cursors.h"
 #include "studio/server/urgency.h"
+#include "tests/studio/commands/run_program.h"
 
 namespace ctpm::server {
 namespace {
 
 const std::string kCut = std::string(CTPM_SHIPPED_SESSIONS) + "/kidney-cut-expert.ctpm";
-
-const std::string kTwoCuts = std::string(CTPM_SHIPPED_SESSIONS) + "/kidney-cut-clumsy.ctpm";
 
 /// Waits for a thread of low priority.
 void wait_until(const std::function<bool()>& is_so) {
@@ -102,12 +101,18 @@ TEST(Moments, NothingIsReplayedAheadWhileATrainingRunsOrSomebodyWaits) {
 }
 
 TEST(SpareCursors, OneIsReadyAtEachCutThatStaysAndGoesOnAsAnyOther) {
-  auto reader = recordings::SessionReader::open(kTwoCuts);
+  const testing::TemporaryFolder folder;
+  const std::string scenes = std::string(CTPM_SOURCE_DIR) + "/scenes/";
+  const auto recorded = testing::run_ctpm(
+      {"record", scenes + "kidney.json", "--script", scenes + "scripts/kidney-cut-x.json", "-o", "x.ctpm", "--fast"},
+      folder.path());
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  auto reader = recordings::SessionReader::open((folder.path() / "x.ctpm").string());
   ASSERT_TRUE(reader);
   SpareCursors spares(*reader);
   wait_until([&] { return spares.is_done(); });
   const std::size_t made = spares.count();
-  EXPECT_GE(made, 1u);  // the first cut stays until the second one begins
+  EXPECT_GE(made, 2u);  // the first cut stays until the second one begins
   EXPECT_LE(made, SpareCursors::kMost);
   EXPECT_FALSE(spares.take(reader->start().initial_state));  // whole tissue has nothing to build
   const std::vector<std::int64_t> keyframes = *reader->keyframe_ticks();
