@@ -51,7 +51,7 @@ void Stage::show(std::int64_t tick, std::uint32_t request) {
     is_wanted_ = true;
     wants_glimpse_ = is_replaying_;  // else the replay says whether it needs one
   }
-  moments_->aim(tick), moments_->rest(Moments::Rest::all);
+  moments_->aim(tick), moments_->rest(Moments::Rest::all), IdlePause::hold();
   news_.notify_all();
 }
 
@@ -118,13 +118,30 @@ Result<bool> Stage::follow_plan(Drawing& drawing) {
   return followed.errors();
 }
 
-/// Waits for one of the two flags of the newest wish, takes it and returns the wish; nothing: the stage ends.
-std::optional<Stage::Wish> Stage::next(bool& flag) {
+/// Waits for the newest wish and takes it; nothing: the stage ends.
+std::optional<Stage::Wish> Stage::next() {
   std::unique_lock lock(mutex_);
-  news_.wait(lock, [&] { return flag || ends_; });
+  news_.wait(lock, [&] { return is_wanted_ || ends_; });
   if (ends_) return std::nullopt;
-  flag = false;
-  (&flag == &is_wanted_ ? is_replaying_ : is_glancing_) = true;
+  is_wanted_ = false, is_replaying_ = true;
+  glimpse_due_ = Clock::now() + kPatience;
+  news_.notify_all();
+  return newest_;
+}
+
+/// Waits until the newest wish needs a glimpse, or its replay takes long; nothing: the stage ends.
+std::optional<Stage::Wish> Stage::next_glimpse() {
+  std::unique_lock lock(mutex_);
+  while (!wants_glimpse_ && !ends_) {
+    if (glimpse_due_ == Clock::time_point::max())
+      news_.wait(lock);
+    else
+      news_.wait_until(lock, glimpse_due_);
+    if (Clock::now() >= glimpse_due_) wants_glimpse_ = true;
+  }
+  if (ends_) return std::nullopt;
+  glimpse_due_ = Clock::time_point::max();
+  wants_glimpse_ = false, is_glancing_ = true;
   return newest_;
 }
 
@@ -138,18 +155,30 @@ bool Stage::is_outdated() {
 void Stage::show(Picture picture, const Wish& wish, bool is_glimpse) {
   const std::lock_guard lock(mutex_);
   if (wish.request != newest_.request || (is_glimpse && !is_replaying_)) return;
-  if (!is_glimpse) is_replaying_ = wants_glimpse_ = false;
+  if (!is_glimpse) is_replaying_ = wants_glimpse_ = false, glimpse_due_ = Clock::time_point::max();
   outbox_->show(std::move(picture));
+  IdlePause::hold();
   moments_->rest(is_glimpse ? Moments::Rest::replaying : Moments::Rest::none);
 }
 
-/// The replay would only hold up the glimpse, and begins where that read from the file already.
+/// The replay would only hold up the glimpse, and a browser that draws it on the same processors, and begins where that
+/// read from the file already.
 void Stage::wait_for_glimpse(const Wish& wish) {
   std::unique_lock lock(mutex_);
   if (wish.request != newest_.request) return;
   wants_glimpse_ = true;
   news_.notify_all();
   news_.wait(lock, [&] { return (!wants_glimpse_ && !is_glancing_) || is_wanted_ || ends_; });
+  news_.wait_for(lock, kDrawing, [&] { return is_wanted_ || ends_; });
+}
+
+/// A long replay of a stage has its turn until what is returned goes away: beside all of them there is a processor for
+/// the browser. Null: the request is outdated.
+Stage::Turn Stage::wait_for_turn() {
+  static std::counting_semaphore<> turns(std::max(1, int(std::thread::hardware_concurrency()) - 1));
+  while (!is_outdated())
+    if (turns.try_acquire_for(std::chrono::milliseconds(2))) return Turn(&turns);
+  return nullptr;
 }
 
 void Stage::replay() {
@@ -157,8 +186,10 @@ void Stage::replay() {
   Seeker seeker(reader_, *moments_, spares_);
   PictureMaker maker(reader_.start().model, number_, cuts_);
   Drawing drawing(reader_);
-  while (const std::optional<Wish> wish = next(is_wanted_)) {
-    if (seeker.is_far(wish->tick)) wait_for_glimpse(*wish);
+  while (const std::optional<Wish> wish = next()) {
+    const bool is_far = seeker.is_far(wish->tick);
+    if (is_far) wait_for_glimpse(*wish);
+    const Turn turn = is_far ? wait_for_turn() : nullptr;
     const Result<bool> there = seeker.go_to(wish->tick, [this] { return is_outdated(); });
     if (!there) outbox_->send(stage_failed(number_, there.errors())), moments_->rest(Moments::Rest::none);
     if (!there || !*there) continue;
@@ -185,13 +216,13 @@ void Stage::glance() {
   become(Urgency::picture);
   Result<recordings::SessionReader> reader = recordings::SessionReader::open(reader_.path());
   if (!reader) {  // it went away since it was opened: the replay says so
-    while (next(wants_glimpse_)) end_glance();
+    while (next_glimpse()) end_glance();
     return;
   }
   Glimpses glimpses(*reader, *moments_);
   PictureMaker maker(reader_.start().model, number_, cuts_);
   for (;; end_glance()) {
-    const std::optional<Wish> wish = next(wants_glimpse_);
+    const std::optional<Wish> wish = next_glimpse();
     if (!wish) return;
     if (wish->tick == 0) continue;
     Result<Glimpses::Glimpse> glimpse = glimpses.of(wish->tick);

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <semaphore>
 #include <string>
 #include <thread>
 #include <vector>
@@ -45,6 +47,16 @@ class Stage {
   double prepared() const { return moments_->share(); }
 
  private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kPatience{30};  ///< with a replay before a glimpse is shown
+  static constexpr std::chrono::milliseconds kDrawing{60};   ///< of a glimpse, by a browser without a GPU
+
+  /// Gives the turn back.
+  struct EndTurn {
+    void operator()(std::counting_semaphore<>* turns) const { turns->release(); }
+  };
+  using Turn = std::unique_ptr<std::counting_semaphore<>, EndTurn>;
+
   struct Wish {
     std::int64_t tick = 0;
     std::uint32_t request = 0;
@@ -55,10 +67,12 @@ class Stage {
   void glance();
   void end_glance();
   void wait_for_glimpse(const Wish& wish);
+  Turn wait_for_turn();
   const State* told();
   Result<double> full_scale(render::ElementQuantity quantity);
   Result<bool> follow_plan(Drawing& drawing);
-  std::optional<Wish> next(bool& flag);
+  std::optional<Wish> next();
+  std::optional<Wish> next_glimpse();
   bool is_outdated();
   void show(Picture picture, const Wish& wish, bool is_glimpse);
   FrameFacts facts(const Seeker& seeker, std::uint32_t request);
@@ -73,13 +87,14 @@ class Stage {
   std::mutex mutex_;
   std::condition_variable news_;
   Wish newest_;
-  bool is_wanted_ = false;                                 ///< `newest_` waits for the replay
-  bool wants_glimpse_ = false;                             ///< `newest_` waits for a glimpse
-  bool is_glancing_ = false;                               ///< a glimpse is on its way
-  bool is_replaying_ = false;                              ///< a request that is not answered yet
-  std::optional<DrawingPlan> plan_;                        ///< nothing is drawn before the first one
-  bool is_plan_new_ = false;                               ///< the replay does not follow it yet
-  std::map<render::ElementQuantity, double> full_scales_;  ///< of a film of this session alone
+  bool is_wanted_ = false;                                    ///< `newest_` waits for the replay
+  bool wants_glimpse_ = false;                                ///< `newest_` waits for a glimpse
+  Clock::time_point glimpse_due_ = Clock::time_point::max();  ///< of `newest_`, if it is not replayed before
+  bool is_glancing_ = false;                                  ///< a glimpse is on its way
+  bool is_replaying_ = false;                                 ///< a request that is not answered yet
+  std::optional<DrawingPlan> plan_;                           ///< nothing is drawn before the first one
+  bool is_plan_new_ = false;                                  ///< the replay does not follow it yet
+  std::map<render::ElementQuantity, double> full_scales_;     ///< of a film of this session alone
   std::mutex told_mutex_;
   std::unique_ptr<const State> told_;  ///< once it was asked for
   bool ends_ = false;

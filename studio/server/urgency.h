@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 
 namespace ctpm::server {
 
@@ -15,7 +16,9 @@ enum class Urgency {
 /// that a thread stays as it was, but for ticks, which every user may let interrupt the slices of others.
 void become(Urgency urgency);
 
-/// While one lives, what may be of use later waits: a training runs.
+/// While one lives, what may be of use later waits: a training runs. It also waits for a moment after each picture that
+/// somebody asked for, until the browser has drawn it: a nice value does not hold between programs whose sessions the
+/// kernel groups (autogroup).
 class IdlePause {
  public:
   IdlePause() { ++count_; }
@@ -23,10 +26,17 @@ class IdlePause {
   IdlePause(const IdlePause&) = delete;
   IdlePause& operator=(const IdlePause&) = delete;
 
-  static bool is_on() { return count_ > 0; }
+  static bool is_on() { return count_ > 0 || Clock::now().time_since_epoch().count() < held_until_; }
+
+  /// From now on for a moment.
+  static void hold() { held_until_ = (Clock::now() + kDrawing).time_since_epoch().count(); }
 
  private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kDrawing{250};  ///< of a picture, by a browser without a GPU
+
   static inline std::atomic<int> count_{0};
+  static inline std::atomic<Clock::rep> held_until_{0};
 };
 
 /// Lets a thread that does something over and over in real time go before everything else, as long as it leaves the

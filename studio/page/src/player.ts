@@ -16,6 +16,7 @@ export interface Track {
 /** Longest step of a playback [s]: where the program simulates slower, playing becomes slower instead of jumping. */
 const kLongestStep = 0.1;
 const kTogether = 1e-3; // of two times [s]
+const kPatience = 30; // with the picture of the other session [ms]
 const kTimelinePoints = 12000; // so that a part of a long session can be looked at closely
 
 /** When an event of that kind first happened [s]; null: never. */
@@ -43,6 +44,8 @@ export class Player {
   private readonly openings = new Map<number, number>(); // of each stage so far
   private readonly drawings = new Map<number, Drawing>(); // newest of each stage
   private readonly asked = new Map<number, number>(); // newest request of each stage
+  private readonly unanswered = new Set<number>(); // stages from which nothing came since they were asked
+  private drawing: ReturnType<typeof setTimeout> | undefined; // of what came from one of them
   private readonly unseen = new Set<number>(); // stages of which it has no picture yet
   private readonly waiting = new Map<number, number>(); // request of each stage that has no replayed picture yet
   private whenReplayed: (() => void)[] = []; // what waits until there are none of those
@@ -121,7 +124,7 @@ export class Player {
   private drop(stage: number): void {
     this.openings.set(stage, (this.openings.get(stage) ?? 0) + 1); // one that is on its way comes too late
     if (!this.tracks.delete(stage)) return;
-    this.waiting.delete(stage), this.unseen.delete(stage), this.asked.delete(stage), this.drawings.delete(stage);
+    this.waiting.delete(stage), this.unanswered.delete(stage), this.unseen.delete(stage), this.asked.delete(stage), this.drawings.delete(stage);
     this.goOn();
     if (stage === 1) this.path = null;
     this.viewer.isCovered = false;
@@ -204,6 +207,11 @@ export class Player {
     return seen;
   }
 
+  /** Whether a replayed picture was asked for that is not there yet. */
+  get isWaiting(): boolean {
+    return this.waiting.size > 0;
+  }
+
   /** What an address needs to lead here again. */
   get place(): Place {
     const [first, second] = [0, 1].map((stage) => this.tracks.get(stage)?.session.path);
@@ -280,7 +288,7 @@ export class Player {
       const { ticks, tick_s } = track.session.info;
       const tick = Math.min(Math.max(Math.round(this.timeOf(stage) / tick_s), 0), ticks);
       const request = ++this.request;
-      this.asked.set(stage, request), this.unseen.add(stage), this.waiting.set(stage, request);
+      this.asked.set(stage, request), this.unanswered.add(stage), this.unseen.add(stage), this.waiting.set(stage, request);
       this.connection.send({ show: { stage, tick, request } });
     }
   }
@@ -297,7 +305,14 @@ export class Player {
     if (!track) return;
     if (message.kind === "drawing") this.drawings.set(stage, message);
     else if (message.kind === "triangles") track.scene.setTriangles(message);
-    else if (message.kind === "waiting") track.scene.wait(message), this.viewer.draw();
+    else if (message.kind === "waiting") track.scene.wait(message), this.unanswered.delete(stage), this.drawTogether();
+  }
+
+  /** Pictures of two sessions that come one after the other are drawn once: each drawing takes all that is in it. */
+  private drawTogether(): void {
+    clearTimeout(this.drawing);
+    if (this.unanswered.size === 0) this.viewer.draw();
+    else this.drawing = setTimeout(() => this.viewer.draw(), kPatience);
   }
 
   private drew(stage: number, frame: Frame): void {

@@ -136,8 +136,14 @@ export function Review({ connection, listing, place, onPlace }: {
 
   useEffect(() => {
     if (!player || !first) return;
+    // A browser may take 10 ms for a new address, and pictures wait for that: it is written once a moment stays.
+    let shown = "", written = "";
     const timer = setInterval(() => {
-      if (!player.isPlaying) onPlace(player.place);
+      const { place } = player, before = shown;
+      shown = JSON.stringify(place);
+      if (player.isPlaying || player.isWaiting || shown !== before || shown === written) return;
+      onPlace(place);
+      written = shown;
     }, 300);
     return () => clearInterval(timer);
   }, [player, first, second]);

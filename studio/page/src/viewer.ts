@@ -1,5 +1,6 @@
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { Picture } from "./picture";
 import { PictureQuality } from "./picture_quality";
 import type { CameraView, SceneView, Vector } from "./protocol";
 import type { StageScene } from "./stage_scene";
@@ -41,6 +42,7 @@ export class Viewer {
   readonly stages = new Map<number, StageScene>();
   frames = 0; // drawn so far
   private readonly renderer: three.WebGLRenderer;
+  private readonly picture: Picture;
   private readonly key = new three.DirectionalLight(0xfff4e6, 2.2);
   private readonly rim = new three.DirectionalLight(0x9fc2ff, 0.7);
   private readonly observer: ResizeObserver;
@@ -57,8 +59,8 @@ export class Viewer {
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new three.WebGLRenderer({ canvas, antialias: this.quality.smoothsEdges, alpha: true });
     this.renderer.setClearColor(0x000000, 0); // the page's ground shows
-    this.renderer.setScissorTest(true);
     this.renderer.autoClear = false;
+    this.picture = new Picture(this.renderer, this.quality.smoothsEdges);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("start", () => (this.isTurning = true));
     this.controls.addEventListener("end", () => (this.isTurning = false));
@@ -174,12 +176,7 @@ export class Viewer {
     const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
     if (width === 0 || height === 0) return;
     for (const stage of this.stages.values()) stage.takeFrame();
-    const ratio = this.quality.ratio(isStill);
-    if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
-    const size = this.renderer.getSize(new three.Vector2());
-    if (size.x !== width || size.y !== height) this.renderer.setSize(width, height, false);
-    this.renderer.setScissor(0, 0, width, height);
-    this.renderer.clear();
+    this.picture.begin(width, height, this.quality.ratio(isStill));
     const scenes = [...this.stages.entries()].sort(([a], [b]) => a - b).map(([, scene]) => scene);
     const part = width / Math.max(scenes.length, 1);
     this.camera.aspect = part / height;
@@ -189,7 +186,7 @@ export class Viewer {
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
     this.onDraw();
-    if (this.isCovered) return;
+    if (this.isCovered) return this.picture.end();
     const away = new three.Vector3().subVectors(this.camera.position, this.controls.target);
     const right = new three.Vector3().crossVectors(this.camera.up, away).normalize();
     this.key.position.copy(away).addScaledVector(this.camera.up, away.length()).addScaledVector(right, -0.5 * away.length());
@@ -197,10 +194,10 @@ export class Viewer {
     scenes.forEach((stage, i) => {
       stage.scene.add(this.key, this.rim);
       if (this.quality.isByProcessor) stage.drawFacing(this.camera.position);
-      this.renderer.setViewport(i * part, 0, part, height);
-      this.renderer.setScissor(i * part, 0, part, height);
+      this.picture.fill(i * part, part);
       this.renderer.render(stage.scene, this.camera);
     });
+    this.picture.end();
     ++this.frames;
   }
 
@@ -209,6 +206,7 @@ export class Viewer {
     this.observer.disconnect();
     this.controls.dispose();
     for (const stage of this.stages.values()) stage.dispose();
+    this.picture.dispose();
     this.renderer.dispose();
   }
 }
