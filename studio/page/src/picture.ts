@@ -1,24 +1,28 @@
 import * as three from "three";
 
-/** The picture of a canvas, drawn with more or fewer pixels than the screen has. The canvas keeps its size where it can: a
-    browser that draws with the processor takes as long for a new one as for a third of a picture. */
+/** The picture of a canvas, drawn with more or fewer pixels than the screen has. A browser that draws with the processor takes
+    as long for a canvas of another size as for a third of a picture, so that one picture of another size is copied into it;
+    more of them in a row are faster in a canvas of their own size. */
 export class Picture {
   private readonly targets = new Map<number, three.WebGLRenderTarget>(); // of each number of pixels for one of the page
   private target: three.WebGLRenderTarget | null = null; // null: the canvas
-  private ratio = 1; // pixels for one of the page, along each side
+  private ratio = 0; // pixels for one of the page, along each side
   private height = 0;
 
   /** `smoothsEdges`: the canvas has samples of its own, into which no other picture can be copied. */
-  constructor(private readonly renderer: three.WebGLRenderer, private readonly smoothsEdges: boolean) {}
+  constructor(private readonly renderer: three.WebGLRenderer, private readonly smoothsEdges: boolean) {
+    renderer.setScissorTest(true);
+  }
 
   /** Begins an empty one; `width`, `height` of the canvas on the page. */
   begin(width: number, height: number, ratio: number): void {
-    const { renderer } = this, screen = this.smoothsEdges ? ratio : Math.min(devicePixelRatio, 2);
-    if (renderer.getPixelRatio() !== screen) renderer.setPixelRatio(screen);
-    const size = renderer.getSize(new three.Vector2());
+    const { renderer } = this, size = renderer.getSize(new three.Vector2());
     if (size.x !== width || size.y !== height) renderer.setSize(width, height, false);
+    const screen = Math.min(devicePixelRatio, 2), fitting = ratio > screen && !this.smoothsEdges ? screen : ratio;
+    const goesOn = ratio === this.ratio || fitting !== ratio || this.smoothsEdges;
+    if (goesOn && renderer.getPixelRatio() !== fitting) renderer.setPixelRatio(fitting);
     this.ratio = ratio, this.height = height;
-    this.target = ratio === screen ? null : this.targetOf(ratio, Math.floor(width * ratio), Math.floor(height * ratio));
+    this.target = ratio === renderer.getPixelRatio() ? null : this.targetOf(ratio, Math.floor(width * ratio), Math.floor(height * ratio));
     this.fill(0, width);
     renderer.clear();
   }
@@ -31,9 +35,8 @@ export class Picture {
     } else {
       renderer.setViewport(from, 0, width, height);
       renderer.setScissor(from, 0, width, height);
-      renderer.setScissorTest(true);
     }
-    renderer.setRenderTarget(target);
+    if (target || renderer.getRenderTarget()) renderer.setRenderTarget(target);
   }
 
   /** Puts it onto the canvas. */
