@@ -273,6 +273,10 @@ struct Model {
     return organs_meet ||
            std::any_of(organs.begin(), organs.end(), [](const OrganRange& organ) { return organ.meets_itself; });
   }
+  /// Whether a hand that says it holds that tool holds a blade; what a damaged file says may be no tool at all.
+  bool is_scalpel(std::int32_t tool) const {
+    return tool >= 0 && std::size_t(tool) < tools.size() && tools[std::size_t(tool)].kind == ToolKind::scalpel;
+  }
   /// Whether tissue touches anything but tools.
   bool has_meeting_bodies() const { return has_meeting_tissue() || !obstacles.empty(); }
   bool has_scalpel() const { return has_tool(ToolKind::scalpel); }

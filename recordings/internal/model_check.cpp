@@ -122,9 +122,10 @@ class FieldCheck {
     const bool is_left_out = meaning.may_be_empty && values.empty();
     if (meaning.shape != EntryOf::none && !is_left_out)
       check_.length(full, values.size(), count_of(model_, meaning.shape));
+    const std::size_t end = values.empty() ? 0 : end_of(meaning);
     for (std::size_t i = 0; i < values.size(); ++i) {
       if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
-        if (is_good(values[i], meaning)) continue;
+        if (is_good(values[i], meaning, end)) continue;
         one(full + place(i), values[i], meaning);
         return;
       } else {
@@ -134,8 +135,13 @@ class FieldCheck {
   }
 
  private:
+  /// Of valid indices. Finding it may take longer than checking all of them.
+  std::size_t end_of(const FieldMeaning& meaning) const {
+    return meaning.range == FieldMeaning::Range::index ? count_of(model_, meaning.indexed) : 0;
+  }
+
   template <class T>
-  bool is_good(T value, const FieldMeaning& meaning) const {
+  bool is_good(T value, const FieldMeaning& meaning, std::size_t end) const {
     const auto number = static_cast<double>(value);
     switch (meaning.range) {
       case FieldMeaning::Range::any:
@@ -144,7 +150,7 @@ class FieldCheck {
         return std::isfinite(number) && (meaning.is_open ? number > meaning.lowest && number < meaning.highest
                                                          : number >= meaning.lowest && number <= meaning.highest);
       case FieldMeaning::Range::index:
-        return number >= meaning.lowest && number < static_cast<double>(count_of(model_, meaning.indexed));
+        return number >= meaning.lowest && number < static_cast<double>(end);
       case FieldMeaning::Range::bits:
         return (static_cast<std::uint64_t>(value) & ~meaning.mask) == 0;
       case FieldMeaning::Range::one_of:
@@ -155,7 +161,7 @@ class FieldCheck {
 
   template <class T>
   bool one(const std::string& name, T value, const FieldMeaning& meaning) {
-    if (is_good(value, meaning)) return true;
+    if (is_good(value, meaning, end_of(meaning))) return true;
     switch (meaning.range) {
       case FieldMeaning::Range::any:
         break;
@@ -163,10 +169,10 @@ class FieldCheck {
         check_.require(false, name, demand(meaning));
         break;
       case FieldMeaning::Range::index:
-        check_.require(false, name,
-                       "is " + shown(static_cast<double>(value)) + ", must be " +
-                           Checker::span(static_cast<std::int64_t>(meaning.lowest),
-                                         static_cast<std::int64_t>(count_of(model_, meaning.indexed))));
+        check_.require(
+            false, name,
+            "is " + shown(static_cast<double>(value)) + ", must be " +
+                Checker::span(static_cast<std::int64_t>(meaning.lowest), static_cast<std::int64_t>(end_of(meaning))));
         break;
       case FieldMeaning::Range::bits:
         check_.require(false, name, "has unknown bits");

@@ -71,8 +71,7 @@ class BladeDepth {
         every_(std::max(1ll, std::llround(1 / (kDepthRate * track.tick)))) {}
 
   void look(std::size_t tick, const State& state) {
-    const std::int32_t tool = track_.tool[tick];
-    if (tool < 0 || model_.tools[std::size_t(tool)].kind != ToolKind::scalpel) return;
+    if (!model_.is_scalpel(track_.tool[tick])) return;
     if (track_.blade_depth.empty()) track_.blade_depth.assign(track_.tick_count(), 0.0);
     if (tick % std::size_t(every_) == 0) last_ = measures_.edge_depth(state);
     track_.blade_depth[tick] = last_;
@@ -135,7 +134,7 @@ Result<Done> replay_all(recordings::SessionReader& session, SessionTrack& track,
           work[tick] = work_of(report.of_hand(track.hand).tool_force, track.tip[tick] - track.tip[tick - 1]);
         if (const Model& model = session.start().model;
             model.organs.size() > 1 && holds_tool(model, track.tool[tick])) {
-          const bool is_blade = model.tools[std::size_t(track.tool[tick])].kind == ToolKind::scalpel;
+          const bool is_blade = model.is_scalpel(track.tool[tick]);
           if (force[tick] > 0) organ[tick] = organ_touched(model, cursor->state(), track.hand, is_blade);
           if (force[tick] > 0 && organ[tick] < 0 && tick > 0) organ[tick] = organ[tick - 1];  // within a cut
         }
@@ -176,11 +175,8 @@ Result<Done> replay_cuts(recordings::SessionReader& session, SessionTrack& track
 /// The tick after which nothing cuts: no hand holds a blade any more, and nothing is severed.
 std::int64_t end_of_cuts(recordings::SessionReader& session, const SessionTrack& track) {
   const Model& model = session.start().model;
-  const auto is_blade = [&](std::int32_t tool) {
-    return holds_tool(model, tool) && model.tools[std::size_t(tool)].kind == ToolKind::scalpel;
-  };
   std::int64_t end = session.tick_count();
-  const auto cuts = [&](std::size_t tick) { return track.severed[tick] != 0 || is_blade(track.tool[tick]); };
+  const auto cuts = [&](std::size_t tick) { return track.severed[tick] != 0 || model.is_scalpel(track.tool[tick]); };
   // Of a second hand the track does not know what it held.
   while (model.hands == 1 && end > 0 && !cuts(std::size_t(end - 1))) --end;
   return end;
@@ -308,9 +304,8 @@ struct HandTrack {
     work.push_back(goes_on ? work_of(report.tool_force, hand.position - tip.back()) : 0.0);
     tool.push_back(hand.tool), tip.push_back(hand.position);
     force.push_back(norm(report.tool_force)), depth.push_back(report.depth);
-    const bool is_held = holds_tool(model, hand.tool);
-    holds += is_held;
-    cuts += is_held && record.severed > 0 && model.tools[std::size_t(hand.tool)].kind == ToolKind::scalpel;
+    holds += holds_tool(model, hand.tool);
+    cuts += record.severed > 0 && model.is_scalpel(hand.tool);
   }
   bool works_more_than(const HandTrack& other) const {
     return cuts != other.cuts ? cuts > other.cuts : holds > other.holds;

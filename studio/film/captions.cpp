@@ -54,8 +54,7 @@ Result<Done> add_largest(recordings::SessionReader& session, const session::Tick
     for (std::size_t i = 0; i < records->size(); ++i)
       for (std::size_t hand = 0; hand < std::size_t(model.hands); ++hand) {
         const stepping::HandReport report = (*records)[i].of_hand(hand);
-        const std::int32_t tool = (*records)[i].inputs.hand(hand).tool;
-        const bool is_blade = tool >= 0 && model.tools[std::size_t(tool)].kind == ToolKind::scalpel;
+        const bool is_blade = model.is_scalpel((*records)[i].inputs.hand(hand).tool);
         if (norm(report.tool_force) > force) force = norm(report.tool_force), force_tick = from + std::int64_t(i);
         if (!is_blade && report.depth > depth) depth = report.depth, depth_tick = from + std::int64_t(i);
       }

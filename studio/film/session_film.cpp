@@ -185,7 +185,7 @@ Error SessionFilm::differs() const {
 }
 
 bool SessionFilm::holds_blade(const Hand& hand) const {
-  return hand.tool >= 0 && model().tools[std::size_t(hand.tool)].kind == ToolKind::scalpel;
+  return model().is_scalpel(hand.tool);
 }
 
 /// While a blade is held, and after it was put away after a cut, the depth is that of the cut.

@@ -61,9 +61,7 @@ double nearness(const Bounds& organs, const Hand& hand) {
 /// Where a hand is seen to work: a blade's tip is inside the tissue.
 Vec3 work_place(const Model& model, const Hand& hand) {
   constexpr double kUpTheBlade = 0.4;
-  const bool is_blade = hand.tool >= 0 && std::size_t(hand.tool) < model.tools.size() &&
-                        model.tools[std::size_t(hand.tool)].kind == ToolKind::scalpel;
-  if (!is_blade) return hand.position;
+  if (!model.is_scalpel(hand.tool)) return hand.position;
   const double length = model.tools[std::size_t(hand.tool)].blade_length;
   return hand.position + rotate(hand.world_from_tool, {0, 0, kUpTheBlade * length});
 }

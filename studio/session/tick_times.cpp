@@ -22,8 +22,7 @@ const char* name_of(Deed deed) {
 Deed TickTimes::deed_of(const recordings::TickRecord& record) const {
   Deed deed = Deed::none;
   for (std::size_t hand = 0; hand < std::size_t(model_.hands); ++hand) {
-    const std::int32_t tool = record.inputs.hand(hand).tool;
-    const bool cuts = tool >= 0 && model_.tools[std::size_t(tool)].kind == ToolKind::scalpel;
+    const bool cuts = model_.is_scalpel(record.inputs.hand(hand).tool);
     if (record.of_hand(hand).contacts > 0) deed = std::max(deed, cuts ? Deed::cut : Deed::contact);
   }
   return deed;

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
+#include "studio/compare/session_track.h"
+#include "tests/recordings/sessions.h"
 #include "tests/studio/commands/run_program.h"
 
 namespace ctpm {
@@ -71,6 +74,28 @@ TEST(Captions, TrackAndPictureSayTheSameInEveryFrame) {
       EXPECT_EQ(said, film::words_at(moments, ticks.tick(frame), shown)) << frame;
     }
   }
+}
+
+// A damaged file may name a tool that the scene does not have; reading past the scene's tools ended the program.
+TEST(Captions, ATickWithAToolThatDoesNotExistIsNoCut) {
+  const testing::Folder folder;
+  const recordings::SessionStart start = testing::small_start();
+  auto writer = recordings::SessionWriter::create(folder / "a.ctpm", start, {});
+  ASSERT_TRUE(writer);
+  testing::live(start, 300, [&](const State& after, recordings::TickRecord record) {
+    if (after.tick == 40) record.inputs.tool = 1'000'000, record.depth = 1;
+    if (after.tick == 41) record.inputs.tool = -1'000'000;
+    writer->append(after, record);
+  });
+  ASSERT_TRUE(writer->finish({}));
+  auto session = recordings::SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(session);
+  const auto moments = film::all_moments(*session, {0, 300});
+  ASSERT_TRUE(moments);
+  EXPECT_TRUE(std::ranges::any_of(*moments, [](const film::Moment& m) { return m.kind == Kind::deepest; }));
+  const auto track = compare::read_recorded(*session);
+  ASSERT_TRUE(track);
+  EXPECT_EQ(track->tool[39], 1'000'000);
 }
 
 TEST(Captions, ThoseOfAPairSayOfWhichHalfTheyAre) {
