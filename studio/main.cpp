@@ -5,6 +5,7 @@
 
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
+#include "studio/commands/unknown_command.h"
 
 int main(int argc, char** argv) {
   using namespace ctpm::commands;
@@ -23,6 +24,7 @@ int main(int argc, char** argv) {
       add_sign(program),   add_key(program),      add_anonymise(program), add_cohort(program),  add_export(program),
       add_demo(program),   add_fit(program),      add_paper(program),     add_compare(program), add_stability(program),
       add_bench(program),  add_fidelity(program), add_studio(program),    add_sweep(program),   add_calibrate(program)};
+  if (argc > 1 && argv[1][0] != '-' && !is_among(commands, argv[1])) return refuse_unknown(commands, argv[1]);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

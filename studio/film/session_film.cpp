@@ -184,9 +184,7 @@ Error SessionFilm::differs() const {
               " exports all the same and says so on every frame"};
 }
 
-bool SessionFilm::holds_blade(const Hand& hand) const {
-  return model().is_scalpel(hand.tool);
-}
+bool SessionFilm::holds_blade(const Hand& hand) const { return model().is_scalpel(hand.tool); }
 
 /// While a blade is held, and after it was put away after a cut, the depth is that of the cut.
 void SessionFilm::show_cut_depth() {

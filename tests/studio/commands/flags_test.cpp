@@ -52,5 +52,15 @@ TEST(Flags, EveryFieldThatAnErrorNamesHasAFlagOfTheProgram) {
   }
 }
 
+TEST(Flags, ACommandThatThereIsNotIsNamedWithTheNearestOne) {
+  const testing::TemporaryFolder folder;
+  const testing::ProgramOutcome near = testing::run_ctpm({"recrod", "a.json"}, folder.path());
+  EXPECT_EQ(near.code, 2);
+  EXPECT_EQ(near.err, "recrod: error: there is no such command (did you mean ctpm record?)\n");
+  const testing::ProgramOutcome far = testing::run_ctpm({"frobnicate"}, folder.path());
+  EXPECT_EQ(far.code, 2);
+  EXPECT_EQ(far.err, "frobnicate: error: there is no such command (ctpm --help lists them)\n");
+}
+
 }  // namespace
 }  // namespace ctpm
