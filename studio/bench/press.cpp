@@ -55,8 +55,7 @@ bool can_press(const loading::LoadedScene& scene) {
 Result<PressedOrgan> press_organ(const loading::LoadedScene& scene, const Model& model) {
   const Surface& surface = scene.organs[0].surface;
   const std::int32_t ball = first_ball(model);
-  std::optional<loading::Standing> standing =
-      loading::settle_scene(model, std::llround(scene.scene.spec.settle / model.tick));
+  std::optional<loading::Standing> standing = loading::settle_scene(scene.scene.spec, model);
   const Vec3Array start = surface_at(surface, standing->state.position);
   BenchMotion motion = press_surface(start, model.tools[std::size_t(ball)].radius, model.tick);
   motion.start = std::move(standing->state);
