@@ -56,8 +56,7 @@ Result<AnchorChoice> try_anchors(scenes::SceneSpec& scene, const FilledOrgan& or
   Result<scenes::BuiltScene> built = scenes::build_model(scene, std::span(&organ, 1));
   if (!built) return built.errors();
   choice.model = std::move(built->model);
-  std::optional<loading::Standing> standing =
-      loading::settle_without_tools(choice.model, std::llround(scene.settle / scene.tick), most_sag, should_stop);
+  std::optional<loading::Standing> standing = loading::settle_without_tools(scene, choice.model, most_sag, should_stop);
   if (!standing) return Error{"organ " + scene.organs[0].name, "stopped", ""};
   choice.standing = *std::move(standing);
   return choice;

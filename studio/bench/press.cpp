@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/surface/surface.h"
 #include "studio/loading/standing.h"
 #include "studio/output/number_text.h"
 
@@ -17,22 +18,10 @@ std::int32_t first_ball(const Model& model) {
   return -1;
 }
 
-/// Positions of the surface's vertices for spheres at `position`.
-Vec3Array surface_at(const Surface& surface, const Vec3Array& position) {
-  const SurfaceBinding& binding = surface.binding;
-  Vec3Array vertices(surface.vertex.size());
-  for (std::size_t v = 0; v < surface.vertex.size(); ++v)
-    for (auto e = std::size_t(binding.first[v]); e < std::size_t(binding.first[v + 1]); ++e)
-      vertices.add(v, binding.weight[e] * position[std::size_t(binding.sphere[e])]);
-  return vertices;
-}
-
-}  // namespace
-
-BenchMotion press_surface(const Vec3Array& vertices, double ball_radius, double tick) {
+/// The ball comes down on the highest of a surface's vertices [m], 6 mm at 60 mm/s, and stays.
+BenchMotion press_surface(const std::vector<Vec3>& vertices, double ball_radius, double tick) {
   constexpr double kDepth = 6e-3, kSpeed = 0.06;
-  const auto highest = std::size_t(std::max_element(vertices.z.begin(), vertices.z.end()) - vertices.z.begin());
-  const Vec3 top = vertices[highest];
+  const Vec3 top = *std::max_element(vertices.begin(), vertices.end(), [](Vec3 p, Vec3 q) { return p.z < q.z; });
   BenchMotion motion;
   motion.ticks = std::llround(1.2 * kDepth / kSpeed / tick);
   motion.hand = [=](std::int64_t t) {
@@ -42,6 +31,8 @@ BenchMotion press_surface(const Vec3Array& vertices, double ball_radius, double 
   };
   return motion;
 }
+
+}  // namespace
 
 double run_time_of(const BenchRun& run, double tick) {
   return std::accumulate(run.seconds.begin(), run.seconds.end(), 0.0) / (double(run.seconds.size()) * tick);
@@ -55,9 +46,9 @@ bool can_press(const loading::LoadedScene& scene) {
 Result<PressedOrgan> press_organ(const loading::LoadedScene& scene, const Model& model) {
   const Surface& surface = scene.organs[0].surface;
   const std::int32_t ball = first_ball(model);
-  std::optional<loading::Standing> standing =
-      loading::settle_scene(model, std::llround(scene.scene.spec.settle / model.tick));
-  const Vec3Array start = surface_at(surface, standing->state.position);
+  std::optional<loading::Standing> standing = loading::settle_scene(scene.scene.spec, model);
+  std::vector<Vec3> start, drawn;
+  surface::deform_surface(surface, standing->state.position, model.organs[0].first, start);
   BenchMotion motion = press_surface(start, model.tools[std::size_t(ball)].radius, model.tick);
   motion.start = std::move(standing->state);
   motion.hand = [hand = motion.hand, ball](std::int64_t tick) {
@@ -72,8 +63,9 @@ Result<PressedOrgan> press_organ(const loading::LoadedScene& scene, const Model&
     return Error{scene.path, "the press diverged at r = " + output::short_number(1e3 * radius) + " mm", ""};
   // Fillings come to rest in shapes that differ a little: what is compared is what the press does.
   for (Vec3Array& position : pressed.run.position) {
-    position = surface_at(surface, position);
-    for (std::size_t v = 0; v < position.size(); ++v) position.add(v, surface.vertex[v] - start[v]);
+    surface::deform_surface(surface, position, model.organs[0].first, drawn);
+    position.resize(drawn.size());
+    for (std::size_t v = 0; v < drawn.size(); ++v) position.set(v, drawn[v] + (surface.vertex[v] - start[v]));
   }
   return pressed;
 }
@@ -88,8 +80,11 @@ Result<loading::LoadedScene> load_refilled(const loading::LoadedScene& own, doub
 
 std::string left_out_sentence(const loading::LoadedScene& own, double factor, const Errors& errors) {
   const double radius = factor * own.scene.spec.organs[0].fill.radius;
+  // What is read from a file has its key in the message, what is built without one has it as the place.
+  const Error& error = errors.front();
+  const std::string key = error.where.starts_with('/') ? error.where + ": " : "";
   return "Spheres of r = " + output::short_number(1e3 * radius, 3) +
-         " mm are too coarse for this scene and left out: " + errors.front().message + ".";
+         " mm are too coarse for this scene and left out: " + key + error.message + ".";
 }
 
 std::vector<reports::Cell> row_of(const std::string& study, const std::string& scene, const std::string& model,

@@ -12,13 +12,11 @@ namespace ctpm::bench {
 inline constexpr double kRefinement = 1.4142135623730951;
 inline constexpr int kReferenceRefinements = 2;
 
-/// The ball comes down on the highest vertex of a surface [m], 6 mm at 60 mm/s, and stays.
-BenchMotion press_surface(const Vec3Array& vertices, double ball_radius, double tick);
-
 /// A motion's processor time [s per simulated s].
 double run_time_of(const BenchRun& run, double tick);
 
-/// The first organ of a scene, pressed by the scene's first ball.
+/// The first organ of a scene, pressed by the scene's first ball, which comes down 6 mm at 60 mm/s on its highest
+/// vertex and stays.
 struct PressedOrgan {
   double radius = 0;  ///< of its spheres [m]
   std::int64_t layers = 0, spheres = 0;
@@ -35,7 +33,8 @@ Result<PressedOrgan> press_organ(const loading::LoadedScene& scene, const Model&
 /// its own; contacts as stiff as those of its own filling. Errors: those of the scene.
 Result<loading::LoadedScene> load_refilled(const loading::LoadedScene& own, double factor);
 
-/// Says why spheres `factor` times as large as the scene's own cannot be studied: `errors` of load_refilled().
+/// Says why spheres `factor` times as large as the scene's own cannot be studied: the first of `errors`, those of a
+/// scene from a file or of one in memory, in the same words.
 std::string left_out_sentence(const loading::LoadedScene& own, double factor, const Errors& errors);
 
 /// Lines of results.csv that are common to presses.

@@ -31,7 +31,7 @@ constexpr std::size_t kTimedTicks = 1000;
 constexpr double kMostGap = 0.05;
 
 struct TimeJob {
-  std::string title, scene;
+  std::string title;
   std::string organ;  ///< whose own filling it has; empty if another
   Model model;
   BenchMotion motion;
@@ -81,8 +81,9 @@ struct Deed {
   std::function<BenchMotion(const Model&, std::int32_t tool, const State& start)> motion;
 };
 
-/// Without gravity. Every run starts from the State in which the organs have come to rest under their own tension.
-Result<TimeJob> make_job(const std::string& path, const std::string& title, const Deed& deed,
+/// Without gravity. Every run starts from the State in which the organs have come to rest under their own tension. The
+/// title is the scene's name and `what` is done.
+Result<TimeJob> make_job(const std::string& path, const std::string& what, const Deed& deed,
                          const std::function<void(scenes::SceneSpec&)>& change, const BenchOptions& options = {}) {
   const auto prepare = [&](scenes::SceneSpec& spec) {
     spec.gravity = {}, spec.loads.clear();
@@ -91,13 +92,12 @@ Result<TimeJob> make_job(const std::string& path, const std::string& title, cons
   const Result<loading::LoadedScene> scene = loading::load_whole_scene(path, {}, prepare);
   if (!scene) return scene.errors();
   if (options.take_warnings) options.take_warnings(scene->scene.warnings);
-  TimeJob job{title, scene->scene.spec.name, "", scene->built.model, {}, deed.kind == ToolKind::ball};
+  TimeJob job{scene->scene.spec.name + ", " + what, "", scene->built.model, {}, deed.kind == ToolKind::ball};
   const std::int32_t tool = first_tool(job.model, deed.kind);
   if (tool < 0)
     return Error{path, std::string("has no ") + (deed.kind == ToolKind::scalpel ? "scalpel" : "ball"),
                  "add one to its tools"};
-  std::optional<loading::Standing> standing =
-      loading::settle_scene(job.model, std::llround(scene->scene.spec.settle / job.model.tick));
+  std::optional<loading::Standing> standing = loading::settle_scene(scene->scene.spec, job.model);
   job.motion = deed.motion(job.model, tool, standing->state);
   job.motion.start = std::move(standing->state);
   return job;
@@ -112,25 +112,23 @@ Result<std::vector<TimeJob>> make_jobs(const BenchOptions& options) {
   const Deed press{ToolKind::ball, press_the_top}, press_both{ToolKind::ball, press_between},
       cut{ToolKind::scalpel, cut_along_x};
   const auto shipped = [&](const char* name) { return options.shipped + "/" + name + ".json"; };
-  const std::string liver = shipped("liver"), title = "liver, press and release";
+  const std::string liver = shipped("liver"), what = "press and release";
   for (const std::string& path : scenes_of(options)) {
     made.push_back(make_job(
-        path, title, press, [](scenes::SceneSpec&) {}, options));
-    if (!made.back()) continue;
-    made.back()->organ = made.back()->model.organs[0].name;
-    if (!options.scenes.empty()) made.back()->title = made.back()->scene + ", press and release";
+        path, what, press, [](scenes::SceneSpec&) {}, options));
+    if (made.back()) made.back()->organ = made.back()->model.organs[0].name;
   }
   if (options.scenes.empty()) {
     if (!options.is_quick) {
-      made.push_back(make_job(liver, title + ", viscosity in Pa s", press, [&](scenes::SceneSpec& spec) {
+      made.push_back(make_job(liver, what + ", viscosity in Pa s", press, [&](scenes::SceneSpec& spec) {
         coarse(spec), spec.organs[0].material.preset += "-pa-s";
       }));
-      made.push_back(make_job(liver, title + ", stiffness x 100", press, [&](scenes::SceneSpec& spec) {
+      made.push_back(make_job(liver, what + ", stiffness x 100", press, [&](scenes::SceneSpec& spec) {
         scenes::MaterialSpec& m = spec.organs[0].material;
         coarse(spec), m.stiffness_scale = 100 * m.stiffness_scale.value_or(1);
       }));
-      made.push_back(make_job(shipped("two-organs"), "liver and kidney, pressed together", press_both, coarse));
-      made.push_back(make_job(shipped("kidney"), "kidney, cut along its length", cut, coarse));
+      made.push_back(make_job(shipped("two-organs"), "pressed together", press_both, coarse));
+      made.push_back(make_job(shipped("kidney"), "cut along its length", cut, coarse));
     }
   }
   std::vector<TimeJob> jobs;

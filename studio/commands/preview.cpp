@@ -1,16 +1,15 @@
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/stepping/step.h"
 #include "scenes/places.h"
 #include "scenes/script.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/commands/flags.h"
 #include "studio/loading/loaded_scene.h"
+#include "studio/loading/standing.h"
 #include "studio/output/files.h"
 #include "studio/render/frame.h"
 #include "studio/render/marks.h"
@@ -69,8 +68,7 @@ int run_preview(PreviewArguments arguments) {
   if (!renderer) return print_errors(renderer.errors());
   const Result<std::optional<scenes::Script>> script = script_of(arguments, *scene);
   if (!script) return print_errors(script.errors());
-  State state = rest_state(model);
-  if (arguments.settled) stepping::Stepper(model).settle(state, std::llround(scene->scene.spec.settle / model.tick));
+  const State state = arguments.settled ? loading::settle_scene(scene->scene.spec, model)->state : rest_state(model);
   render::DrawOptions options = look->at((*renderer)->scene(), {&state.last_inputs, 1});
   const auto draw = [&] {
     render::Frame picture = (*renderer)->draw(state, options);

@@ -108,9 +108,7 @@ class Look {
 std::optional<Errors> find_oddities(const LoadedScene& scene, const std::function<bool()>& should_stop) {
   Look look(scene);
   look.at_points();
-  const Model& model = scene.built.model;
-  const std::optional<Standing> standing =
-      settle_scene(model, std::llround(scene.scene.spec.settle / model.tick), {}, should_stop);
+  const std::optional<Standing> standing = settle_scene(scene.scene.spec, scene.built.model, {}, should_stop);
   if (!standing) return std::nullopt;
   if (!standing->organ.empty()) look.at_anchors(*standing);
   return look.warnings;

@@ -1,6 +1,7 @@
 #include "studio/loading/standing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/stepping/step.h"
@@ -44,8 +45,9 @@ bool Standing::stands() const {
 
 namespace {
 
-std::optional<Standing> settle_from(State rest, const Model& model, std::int64_t ticks, std::optional<double> most_sag,
-                                    const std::function<bool()>& should_stop) {
+std::optional<Standing> settle_from(State rest, const scenes::SceneSpec& scene, const Model& model,
+                                    std::optional<double> most_sag, const std::function<bool()>& should_stop) {
+  const std::int64_t ticks = std::llround(scene.settle / model.tick);
   Standing standing;
   standing.state = std::move(rest);
   stepping::Stepper stepper(model);
@@ -74,16 +76,16 @@ std::optional<Standing> settle_from(State rest, const Model& model, std::int64_t
 
 }  // namespace
 
-std::optional<Standing> settle_scene(const Model& model, std::int64_t ticks, std::optional<double> most_sag,
+std::optional<Standing> settle_scene(const scenes::SceneSpec& scene, const Model& model, std::optional<double> most_sag,
                                      const std::function<bool()>& should_stop) {
-  return settle_from(rest_state(model), model, ticks, most_sag, should_stop);
+  return settle_from(rest_state(model), scene, model, most_sag, should_stop);
 }
 
-std::optional<Standing> settle_without_tools(Model& model, std::int64_t ticks, std::optional<double> most_sag,
-                                             const std::function<bool()>& should_stop) {
+std::optional<Standing> settle_without_tools(const scenes::SceneSpec& scene, Model& model,
+                                             std::optional<double> most_sag, const std::function<bool()>& should_stop) {
   State rest = rest_state(model);
   const ToolsAside aside(model);
-  return settle_from(std::move(rest), model, ticks, most_sag, should_stop);
+  return settle_from(std::move(rest), scene, model, most_sag, should_stop);
 }
 
 }  // namespace ctpm::loading

@@ -6,6 +6,7 @@
 
 #include "core/model/model.h"
 #include "core/model/state.h"
+#include "scenes/scene_spec.h"
 
 namespace ctpm::loading {
 
@@ -30,12 +31,14 @@ struct Standing {
   bool stands() const;
 };
 
-/// Lets a scene come to rest as a session does before its first tick, for at most `ticks` ticks. Ends as soon as an
-/// organ sags by more than `most_sag` of its size; unset: never. None if `should_stop` ended it. The second lays the
-/// Model's tools aside meanwhile, which is sooner where the surfaces are fine; the result is the same.
-std::optional<Standing> settle_scene(const Model& model, std::int64_t ticks, std::optional<double> most_sag = {},
+/// Lets the Model of a scene come to rest as a session does before its first tick, for at most the scene's `settle_s`.
+/// Ends as soon as an organ sags by more than `most_sag` of its size; unset: never. None if `should_stop` ended it. The
+/// second lays the Model's tools aside meanwhile, which is sooner where the surfaces are fine; the result is the same.
+std::optional<Standing> settle_scene(const scenes::SceneSpec& scene, const Model& model,
+                                     std::optional<double> most_sag = {},
                                      const std::function<bool()>& should_stop = {});
-std::optional<Standing> settle_without_tools(Model& model, std::int64_t ticks, std::optional<double> most_sag = {},
+std::optional<Standing> settle_without_tools(const scenes::SceneSpec& scene, Model& model,
+                                             std::optional<double> most_sag = {},
                                              const std::function<bool()>& should_stop = {});
 
 }  // namespace ctpm::loading

@@ -20,8 +20,7 @@ std::optional<recordings::SessionStart> start_session(const loading::LoadedScene
   recordings::SessionStart start;
   start.scene_text = scene.scene.found_text;
   start.model = scene.built.model;
-  std::optional<loading::Standing> settled =
-      loading::settle_scene(start.model, std::llround(scene.scene.spec.settle / start.model.tick), {}, should_stop);
+  std::optional<loading::Standing> settled = loading::settle_scene(scene.scene.spec, start.model, {}, should_stop);
   if (!settled) return std::nullopt;
   start.initial_state = std::move(settled->state);
   start.build_fingerprint = version::build_fingerprint();

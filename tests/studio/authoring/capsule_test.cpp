@@ -85,7 +85,7 @@ double settled_size(bool is_pressed_inside) {
   for (scenes::MaterialSpec* material : {&organ.material, &organ.layers[0].material}) material->viscosity = 0;
   const Result<scenes::BuiltScene> built = scenes::build_model(scene, std::span(&loaded->organs[0], 1));
   EXPECT_TRUE(built);
-  const auto standing = loading::settle_scene(built->model, 5000);
+  const auto standing = loading::settle_scene(scene, built->model);
   const auto volume = [&](const State& state) {
     std::vector<Vec3> vertex;
     surface::deform_surface(built->model.surfaces[0], state.position, 0, vertex);

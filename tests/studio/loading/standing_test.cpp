@@ -16,6 +16,7 @@ namespace {
 loading::LoadedScene kidney() {
   Result<loading::LoadedScene> loaded = loading::load_whole_scene(std::string(CTPM_SOURCE_DIR) + "/scenes/kidney.json");
   if (!loaded) throw std::runtime_error(loaded.errors().front().message);
+  loaded->scene.spec.settle = 0.4;
   return *std::move(loaded);
 }
 
@@ -24,8 +25,8 @@ TEST(Standing, IsTheSameToTheBitWithTheToolsLaidAside) {
   Model& model = scene.built.model;
   ASSERT_TRUE(model.has_scalpel());
   const std::size_t tools = model.tools.size();
-  constexpr std::int64_t kTicks = 400;
-  const auto with = loading::settle_scene(model, kTicks), without = loading::settle_without_tools(model, kTicks);
+  const scenes::SceneSpec& spec = scene.scene.spec;
+  const auto with = loading::settle_scene(spec, model), without = loading::settle_without_tools(spec, model);
   ASSERT_TRUE(with && without);
   EXPECT_EQ(recordings::state_hash(with->state), recordings::state_hash(without->state))
       << "and what a later cut needs in State is there";
@@ -40,7 +41,7 @@ TEST(Standing, IsTheSameToTheBitWithTheToolsLaidAside) {
 TEST(ScriptTrial, DoesNotDependOnWhatItsStepperDidBefore) {
   loading::LoadedScene scene = kidney();
   Model& model = scene.built.model;
-  const auto standing = loading::settle_without_tools(model, 400);
+  const auto standing = loading::settle_without_tools(scene.scene.spec, model);
   ASSERT_TRUE(standing);
   const scenes::Script script =
       scenes::organ_script(scene.scene.spec, std::span<const FilledOrgan>(scene.organs), 0, {});
