@@ -456,6 +456,27 @@ test("an export is the one that the shown command makes, and can be cancelled", 
   assert.ok(!existsSync(join(folder, "long.avi")));
 });
 
+test("from a pair of sessions to a video of its worst moment", async () => {
+  const began = Date.now();
+  await page.click("#tab-compare");
+  await page.locator("#panel select").selectOption(kClumsy);
+  await page.waitForSelector(".captions .second");
+  await page.click("#panel button.main");
+  await page.locator("#panel .jumps button").first().click();
+  const [, shown] = / ([-\d.]+) s$/.exec(await page.locator(".captions .first").innerText());
+  await page.click("#tab-export");
+  await page.locator('#panel .field:has-text("file in the folder") input').fill("worst.avi");
+  await page.click("#panel button:has-text('1 s around')");
+  await page.click("#panel button.main");
+  await page.waitForSelector("#panel .good:has-text('worst.avi')");
+  console.log(`a video of the worst moment ${((Date.now() - began) / 1e3).toFixed(1)} s after the comparison was opened`);
+  const [from, to] = await Promise.all(["from [s]", "to [s]"].map(async (label) => Number(await page.locator(`#panel .field:has-text("${label}") input`).inputValue())));
+  assert.ok(from <= Number(shown) + 0.01 && Number(shown) - 0.01 <= to && to - from > 0.4, `${shown} s, and a video from ${from} to ${to} s`);
+  assert.ok(readFileSync(join(folder, "worst.avi")).length > 1e4);
+  await page.click("#tab-compare");
+  await page.locator("#panel select").selectOption("");
+});
+
 test("it fits a desk, a large screen and a tablet", async () => {
   for (const [width, height] of [[1280, 720], [1920, 1080], [820, 1180]]) {
     await page.setViewportSize({ width, height });

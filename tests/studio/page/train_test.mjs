@@ -291,14 +291,10 @@ test("the mouse presses, cuts and records", async () => {
   assert.ok(Math.min(...heard) === 160 && Math.max(...heard) > 170, `the sound rises with the force: ${Math.min(...heard)} to ${Math.max(...heard)} Hz`);
   assert.deepEqual(await seriousFindings(page), []);
   await drag({ x: middle.x, y: middle.y + 150 }, { x: 0, y: -150 }, 40);
-  // The blade, with keys and mouse: down into the organ, and along.
+  // The blade, by the mouse alone: down into the organ, and along.
   await page.keyboard.press("2");
-  await drag({ x: middle.x, y: middle.y }, { x: -20, y: 170 }, 60);
-  for (let i = 0; i < 12; ++i) await page.keyboard.press("ArrowDown");
-  for (let i = 0; i < 40; ++i) {
-    await page.keyboard.press("ArrowRight");
-    await page.waitForTimeout(20);
-  }
+  await drag({ x: middle.x, y: middle.y }, { x: -20, y: 240 }, 90);
+  await drag({ x: middle.x - 20, y: middle.y + 240 }, { x: 180, y: 0 }, 90);
   await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /severed[1-9]/.test(d.textContent)));
   await picture(page, "train-cut");
   console.log(`training: ${await reading(page, "late ticks")} late ticks, last tick ${await reading(page, "last tick, p99")}, while a browser draws on the same processors`);
@@ -336,9 +332,11 @@ test("the session verifies to the bit, and is compared at once", async () => {
 });
 
 test("a worst moment leads to the timeline", async () => {
-  await page.locator("aside .jumps button").first().click();
+  const worst = page.locator("aside .jumps button").first(), when = Number.parseFloat(await worst.innerText());
+  await worst.click();
   await page.waitForFunction(() => document.querySelectorAll(".uplot").length >= 3);
   await page.waitForTimeout(1500);
+  assert.ok((await page.locator(".captions .second").innerText()).includes(` ${when.toFixed(2)}`), `the trainee's own time is ${when} s`);
   assert.match(await page.locator(".captions").innerText(), /kidney-cut-expert.*mine/s);
   assert.ok(await page.locator("#panel .jumps button").count(), "the other worst moments are there too");
   await picture(page, "train-to-review");
