@@ -164,6 +164,7 @@ test("errors in the text are those of check, at their places", async () => {
   assert.deepEqual(await seriousFindings(page), []);
   // Nothing was written, and a draft outlives the page.
   assert.equal(onDisk(), good);
+  assert.ok(await page.locator(".view > canvas").isVisible() && !(await page.locator(".view .empty").count()), "what was valid last is still shown");
   await page.reload();
   await page.click(`.scenes button:has-text('my-kidney-scene')`);
   await page.waitForSelector("aside .jumps button.error");
@@ -490,7 +491,7 @@ test("nothing is lost when the program is killed while a scene is edited", async
 
 test("it fits other windows", async () => {
   await page.click("header nav button:has-text('Author')");
-  for (const [width, height] of [[1920, 1080], [820, 1180]]) {
+  for (const [width, height] of [[1280, 720], [1920, 1080], [820, 1180]]) {
     await page.setViewportSize({ width, height });
     await page.click(`.scenes button:has-text('my-kidney-scene')`);
     await settled();

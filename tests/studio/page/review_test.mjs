@@ -73,6 +73,14 @@ test("a session opens, and any moment of it is a press away", async () => {
   await picture(page, "review-moment");
 });
 
+test("what happened is marked on the timeline, at its time", async () => {
+  const marks = await page.locator(".mark").evaluateAll((all) => all.map((mark) => [mark.title, Number(mark.style.getPropertyValue("--at"))]));
+  const events = expert.events.filter(({ kind }) => kind !== "late tick"); // of the machine, not of the hand
+  assert.ok(events.some(({ kind }) => kind === "cut") && events.some(({ kind }) => kind === "contact begins"));
+  assert.deepEqual(marks.map(([title]) => title), events.map(({ tick, text }) => `${(tick * expert.tick_s).toFixed(3)} s ${text}`));
+  for (const [i, { tick }] of events.entries()) assert.ok(Math.abs(marks[i][1] - (tick * expert.tick_s) / expert.duration_s) < 1e-6, marks[i][0]);
+});
+
 test("where the browser draws with the processor, what faces away is left out, wherever it is seen from", async () => {
   await page.evaluate(() => {
     globalThis.largest = 0; // triangles of one draw: those of the organ
@@ -451,6 +459,7 @@ test("an export is the one that the shown command makes, and can be cancelled", 
   await field("from [s]").fill("0");
   await field("to [s]").fill("");
   await page.click("#panel button.main");
+  await page.waitForFunction(() => /exporting [1-9]\d* %/.test(document.querySelector("#panel .working")?.textContent ?? ""));
   await page.click("#panel .working button");
   await page.waitForSelector("#panel .problems");
   assert.ok(!existsSync(join(folder, "long.avi")));
