@@ -26,6 +26,11 @@ interface Desk {
   brush: Brush;
 }
 
+/** The organ that an item is, or belongs to. */
+function organOf(item: Item | null): number | null {
+  return item?.path[0] === "organs" ? Number(item.path[1]) : null;
+}
+
 /** Scenes: from a mesh, in the picture, and as text. */
 export function Author({ connection, listing, onTry, onChanged }: {
   connection: Connection;
@@ -71,7 +76,8 @@ export function Author({ connection, listing, onTry, onChanged }: {
   const modes = modesOf(item), used = modes.includes(mode) ? mode : "move";
   const select = (key: string) => {
     setSelected(key);
-    setPanel((shown) => (key && shown === "scene" ? "place" : shown));
+    // The filling is of organs: anything else that is chosen, or was just added, shows where it is.
+    setPanel((shown) => (key && (shown === "scene" || (shown === "filling" && !/^organs\/\d+$/.test(key))) ? "place" : shown));
   };
 
   // The picture follows the text.
@@ -196,7 +202,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
             </div>
             <div id="panel" class="panel" role="tabpanel" aria-labelledby={`tab-${panel}`} tabIndex={0}>
               {panel === "place" && <Inspector scene={scene} item={item} viewer={desk!.viewer} onRemove={remove} />}
-              {panel === "filling" && <Filling connection={connection} scene={scene} />}
+              {panel === "filling" && <Filling connection={connection} scene={scene} chosen={organOf(item)} />}
               {panel === "scene" && <>{imported && <ImportResult imported={imported} />}<About scene={scene} /></>}
             </div>
             <SceneEditor scene={scene} />

@@ -107,7 +107,7 @@ export function Result({ comparison, onMoment }: { comparison: ComparisonResult;
             <li key={i}>
               <button type="button" onClick={() => onMoment(moment.worst_s)}>
                 <span class="number">{seconds(moment.worst_s, 2)}</span> {moment.what}: {short(moment.value, 3)} {moment.unit}
-                {moment.limit != null && `, limit ${short(moment.limit, 3)}`}
+                {moment.limit != null && `, limit ${short(moment.limit, 3)} ${moment.unit}`}
               </button>
             </li>
           ))}

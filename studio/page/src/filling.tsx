@@ -21,11 +21,12 @@ interface Scatter {
 }
 
 /** Radii of the spheres: how many there are then, what a tick costs, how much the force depends on how they lie. */
-export function Filling({ connection, scene }: { connection: Connection; scene: AuthorScene }) {
-  const organs = listOf(scene.doc?.lastValue, "organs");
+export function Filling({ connection, scene, chosen }: { connection: Connection; scene: AuthorScene; chosen: number | null }) {
+  const organs = listOf(scene.doc?.lastValue, "organs").map((organ, i) => [organ, i] as const);
+  const sorted = organs.sort(([, a], [, b]) => Number(b === chosen) - Number(a === chosen)); // the one that is worked on comes first
   return (
     <>
-      {organs.map((organ, i) => organ.rig ? null : <OrganFilling key={i} scene={scene} organ={i} name={String(organ.name ?? `organ ${i + 1}`)} />)}
+      {sorted.map(([organ, i]) => organ.rig ? null : <OrganFilling key={i} scene={scene} organ={i} name={String(organ.name ?? `organ ${i + 1}`)} />)}
       <Cost scene={scene} />
       <ScatterOf connection={connection} scene={scene} />
     </>

@@ -5,6 +5,7 @@ import type { JSONPath } from "jsonc-parser";
 import { type Item, placed, sized, turned } from "./items";
 import { shapeOf } from "./item_shapes";
 import type { Json } from "./json_edit";
+import { apart, type Label } from "./labels";
 import type { StageScene } from "./stage_scene";
 import type { Viewer } from "./viewer";
 
@@ -151,6 +152,7 @@ export class Gizmos {
     // A camera through which the viewer looks would frame the picture.
     for (const shape of this.group.children) if (shape.userData.isCamera) shape.visible = shape.position.distanceTo(this.viewer.camera.position) > 0.3 * this.size;
     const { clientWidth: width, clientHeight: height } = this.viewer.canvas;
+    const named: [HTMLElement, Label][] = [];
     for (const [key, handle] of this.handles) {
       const item = this.item(key), at = item?.place && this.viewer.pixelOf(item.place.clone().add(item.offset));
       const isIn = at && at.x > 0 && at.y > 0 && at.x < width && at.y < height;
@@ -162,8 +164,15 @@ export class Gizmos {
       const edge = isIn ? 0 : kEdge;
       const x = three.MathUtils.clamp(at.x, edge, width - edge), y = three.MathUtils.clamp(at.y, edge, height - edge);
       handle.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
-      handle.classList.toggle("left", x > width - 120);
+      const isLeft = x > width - 120;
+      handle.classList.toggle("left", isLeft);
+      const name = handle.firstElementChild as HTMLElement;
+      const label = { x, y, width: name.offsetWidth, height: name.offsetHeight, isLeft };
+      if (key === this.selected) named.unshift([name, label]); // it stays; the others make room
+      else named.push([name, label]);
     }
+    const downs = apart(named.map(([, label]) => label), height);
+    named.forEach(([name], i) => (name.style.transform = downs[i] ? `translateY(${downs[i].toFixed(1)}px)` : ""));
   }
 
   private listen(handle: HTMLButtonElement, key: string): void {

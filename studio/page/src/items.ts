@@ -143,7 +143,7 @@ export function placed(item: Item, place: three.Vector3): Values {
   if (item.shape === "pin") return [[[...item.path, "holds_mm"], at]];
   if (item.shape === "camera") return [[[...item.path, "eye_mm"], at]];
   const values: Values = [[[...item.path, "at_mm"], at]];
-  if (item.kind === "tool" && !item.isWritten) values.push(...turned(item, item.turn));
+  if (item.kind === "tool" && !item.isWritten) values.push(...turned({ ...item, isWritten: true }, item.turn)); // its place is the new one
   return values;
 }
 

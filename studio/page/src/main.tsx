@@ -97,7 +97,7 @@ function App() {
             <Author connection={connection} listing={listing} onChanged={list} onTry={(scene, text) => go("train", { scene, text })} />
           ) : (
             <Train connection={connection} listing={listing} tryScene={place.scene} tryText={place.text} onChanged={list}
-              onReview={(there) => go("review", there)} />
+              onReview={(there) => go("review", there)} onAuthor={() => go("author", {})} />
           )
         ) : (
           <Empty title="Connecting"><p>to the program on this machine.</p></Empty>

@@ -31,12 +31,13 @@ function freeName(listing: Listing): string {
   for (let i = 1; ; ++i) if (!taken.has(`mine-${i}.ctpm`)) return `mine-${i}.ctpm`;
 }
 
-export function Train({ connection, listing, tryScene, tryText, onReview, onChanged }: {
+export function Train({ connection, listing, tryScene, tryText, onReview, onAuthor, onChanged }: {
   connection: Connection;
   listing: Listing;
   tryScene: string | undefined; // at once, and nothing is recorded
   tryText: string | undefined; // of that scene, as its author has it now
   onReview: (place: Place) => void;
+  onAuthor: () => void; // back to the scene that was tried
   onChanged: () => void;
 }) {
   const canvas = useRef<HTMLCanvasElement>(null);
@@ -250,13 +251,14 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
                 ))}
               </div>
             )}
+            <span class="recorded">{output ? <><i aria-hidden="true" /> records {output}</> : "not recorded"}</span>
             <output class="clock">{seconds(frame?.time ?? 0, 1)}</output>
             {!trainer.awaited && isTouch && (
               <div class="buttons held" role="group" aria-label="Depth and turning">
                 {kHeld.map(([text, key]) => <HeldButton key={key} text={text} onHeld={() => trainer.press(key, false)} />)}
               </div>
             )}
-            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}{isTouch ? "one finger: move · two: look around" : "mouse, arrows: move · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · Esc: end"}</span>}
+            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}{isTouch ? "one finger: move · two: look around" : "mouse, arrows: move · a click holds the mouse, so that it cannot leave · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · Esc: end"}</span>}
           </div>
         )}
       </div>
@@ -315,7 +317,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onChan
           </>
         )}
         {phase === "ended" && ended && (
-          <Ended connection={connection} listing={listing} ended={ended} expert={expert} onExpert={setExpert} onReview={onReview} onAgain={again} />
+          <Ended connection={connection} listing={listing} ended={ended} expert={expert} onExpert={setExpert} onReview={onReview} onAgain={again} onAuthor={tryScene ? onAuthor : null} />
         )}
       </aside>
     </div>
@@ -335,7 +337,7 @@ function ExpertChoice({ listing, expert, onExpert, use }: { listing: Listing["se
 }
 
 /** What became of a session: its numbers, its verdict, and how it compares with the expert's. */
-function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain }: {
+function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain, onAuthor }: {
   connection: Connection;
   listing: Listing;
   ended: EndedTraining;
@@ -343,6 +345,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
   onExpert: (path: string) => void;
   onReview: (place: Place) => void;
   onAgain: () => void;
+  onAuthor: (() => void) | null;
 }) {
   const [verdict, setVerdict] = useState<{ same: boolean; text: string } | null>(null);
   const [comparison, setComparison] = useState<ComparisonResult | null>(null);
@@ -383,6 +386,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
           ]} />
         )}
         <button type="button" onClick={onAgain}>Train again</button>
+        {onAuthor && <button type="button" onClick={onAuthor}>Back to Author</button>}
         {ended.path && <button type="button" onClick={() => onReview({ session: ended.path, time: 0 })}>Open in Review</button>}
       </Section>
       {ended.path && (

@@ -256,10 +256,11 @@ test("a tool stands where it was dragged to, and is taken up there", async () =>
   await picture(page, "author-turn");
   await button("Try it").click();
   await page.waitForSelector(".view.running .force-bar");
+  assert.equal(await page.locator(".recorded").textContent(), "not recorded");
   await page.keyboard.press("Escape");
   await page.waitForSelector("button:has-text('Train again')");
-  await page.click("header nav button:has-text('Author')");
-  await page.click(`.scenes button:has-text('my-kidney-scene')`);
+  await page.click("button:has-text('Back to Author')"); // to the same scene
+  await page.waitForSelector(`.scenes button[aria-current=true]:has-text('my-kidney-scene')`);
   await settled();
 });
 
@@ -399,6 +400,14 @@ test("a second mesh becomes an organ of the scene, which is moved by its handle"
   await page.click(".objects button:has-text('kidney-2')");
   await page.waitForTimeout(300);
   await picture(page, "author-two-organs");
+  // The filling begins with the organ that was chosen; a tool has none, and shows its place.
+  await page.click("#tab-filling");
+  assert.equal(await page.locator("#panel h2").first().textContent(), "kidney-2: its spheres");
+  assert.equal(await page.locator("#panel h2").nth(1).textContent(), "kidney: its spheres");
+  await page.click(".objects button:has-text('scalpel')");
+  assert.equal(await page.locator("#tab-place").getAttribute("aria-selected"), "true");
+  await page.click(".objects button:has-text('kidney-2')");
+  await settled();
   await drag(await centreOf(handle("kidney-2")), { x: -20, y: -30 });
   const moved = (await scene()).organs[1].at_mm;
   assert.notDeepEqual(moved, organs[1].at_mm);
@@ -487,6 +496,34 @@ test("nothing is lost when the program is killed while a scene is edited", async
   await page.waitForFunction((key) => localStorage.getItem(key) === null, `ctpm.draft:${kScene}`);
   assert.equal(onDisk(), changed);
   studio.complaints.splice(complaints); // that nothing answered
+});
+
+test("a tool without a place goes where its handle is dragged, and no name covers another", async () => {
+  await page.locator(".scenes button", { has: page.locator('span:text-is("kidney")') }).click();
+  await settled();
+  assert.ok(JSON.parse(onDisk("kidney.json")).tools.every((tool) => tool.at_mm === undefined));
+  const before = await centreOf(handle("ball"));
+  await drag(before, { x: 30, y: -20 });
+  await settled();
+  const ball = await centreOf(handle("ball"));
+  assert.ok(Math.hypot(ball.x - before.x - 30, ball.y - before.y + 20) < 3, JSON.stringify([before, ball]));
+  // Beside each other on one line, the scalpel's name would be on the ball and its name.
+  const names = async () => {
+    const boxes = await page.locator(".handle span:visible").evaluateAll((spans) => spans.map((span) => span.getBoundingClientRect().toJSON()));
+    const dots = await page.locator(".handle:visible").evaluateAll((handles) => handles.map((h) => h.getBoundingClientRect().toJSON()));
+    return { boxes, dots };
+  };
+  const meet = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+  for (const [x, y] of [[-14, 4], [0, 0], [-30, 0], [40, 3]]) {
+    const from = await centreOf(handle("scalpel")), to = await centreOf(handle("ball"));
+    await drag(from, { x: to.x + x - from.x, y: to.y + y - from.y });
+    await settled();
+    const { boxes, dots } = await names();
+    assert.equal(boxes.length, 2);
+    assert.ok(!meet(boxes[0], boxes[1]), `${x}, ${y}: ${JSON.stringify(boxes)}`);
+    for (const box of boxes) assert.ok(!dots.some((dot) => meet(box, dot)), `${x}, ${y}: ${JSON.stringify([box, dots])}`);
+    if (x === -14) await picture(page, "author-names-apart");
+  }
 });
 
 test("it fits other windows", async () => {

@@ -295,6 +295,9 @@ test("two sessions beside each other, compared", async () => {
   await page.click("#panel button.main");
   await page.waitForSelector("#panel table");
   const worst = await page.locator("#panel .jumps button").first().innerText();
+  const limits = (await page.locator("#panel .jumps button").allInnerTexts()).filter((moment) => moment.includes("limit"));
+  for (const moment of limits) assert.match(moment, / (\S+), limit [\d.]+ \1$/, "a limit has the unit of what goes beyond it");
+  assert.ok(limits.length > 0);
   // It is after the first session's end: both are shown at the same place of the path.
   assert.ok(Number.parseFloat(worst) - offset > expert.duration_s);
   await page.locator("#panel .jumps button").first().click();
@@ -493,6 +496,15 @@ test("it fits a desk, a large screen and a tablet", async () => {
     assert.ok((await overflow(page)) <= 0, `${width}x${height}`);
     await picture(page, `review-${width}x${height}`);
   }
+  // On a tablet what is below the picture is scrolled, and the picture stays.
+  const top = await page.locator("main").evaluate((main) => {
+    main.scrollTop = main.scrollHeight;
+    return main.scrollTop > 0 ? main.getBoundingClientRect().top : null;
+  });
+  assert.ok(top !== null, "there is something to scroll");
+  assert.equal((await page.locator(".view").boundingBox()).y, top);
+  await picture(page, "review-820x1180-scrolled");
+  await page.locator("main").evaluate((main) => void (main.scrollTop = 0));
   assert.deepEqual(await seriousFindings(page), []);
 });
 

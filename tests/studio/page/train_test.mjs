@@ -273,6 +273,7 @@ test("the mouse presses, cuts and records", async () => {
   await page.waitForSelector(".view.running");
   const box = await page.locator(".view canvas").boundingBox();
   const middle = { x: box.x + box.width / 2, y: box.y + 60 };
+  assert.equal((await page.locator(".recorded").textContent()).trim(), "records mine.ctpm");
   await page.evaluate(() => {
     globalThis.heard = [];
     const set = AudioParam.prototype.setTargetAtTime;
