@@ -487,6 +487,7 @@ test("from a pair of sessions to a video of its worst moment", async () => {
   assert.ok(readFileSync(join(folder, "worst.avi")).length > 1e4);
   await page.click("#tab-compare");
   await page.locator("#panel select").selectOption("");
+  await page.click("#tab-export");
 });
 
 test("it fits a desk, a large screen and a tablet", async () => {
