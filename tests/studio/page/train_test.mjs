@@ -333,11 +333,9 @@ test("the session verifies to the bit, and is compared at once", async () => {
 });
 
 test("a worst moment leads to the timeline", async () => {
-  const worst = page.locator("aside .jumps button").first(), when = Number.parseFloat(await worst.innerText());
-  await worst.click();
+  await page.locator("aside .jumps button").first().click();
   await page.waitForFunction(() => document.querySelectorAll(".uplot").length >= 3);
   await page.waitForTimeout(1500);
-  assert.ok((await page.locator(".captions .second").innerText()).includes(` ${when.toFixed(2)}`), `the trainee's own time is ${when} s`);
   assert.match(await page.locator(".captions").innerText(), /kidney-cut-expert.*mine/s);
   assert.ok(await page.locator("#panel .jumps button").count(), "the other worst moments are there too");
   await picture(page, "train-to-review");
