@@ -333,9 +333,12 @@ test("the session verifies to the bit, and is compared at once", async () => {
 });
 
 test("a worst moment leads to the timeline", async () => {
-  await page.locator("aside .jumps button").first().click();
+  const worst = page.locator("aside .jumps button").first(), when = Number.parseFloat(await worst.innerText());
+  await worst.click();
   await page.waitForFunction(() => document.querySelectorAll(".uplot").length >= 3);
   await page.waitForTimeout(1500);
+  const [, shown] = /mine\.ctpm ([\d.]+) s/.exec(await page.locator(".captions").innerText());
+  assert.ok(Math.abs(Number(shown) - when) < 0.006, `the trainee's own time is ${shown} s, the moment's ${when} s`);
   assert.match(await page.locator(".captions").innerText(), /kidney-cut-expert.*mine/s);
   assert.ok(await page.locator("#panel .jumps button").count(), "the other worst moments are there too");
   await picture(page, "train-to-review");
