@@ -258,7 +258,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onAuth
                 {kHeld.map(([text, key]) => <HeldButton key={key} text={text} onHeld={() => trainer.press(key, false)} />)}
               </div>
             )}
-            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}{isTouch ? "one finger: move · two: look around" : "mouse, arrows: move · a click holds the mouse, so that it cannot leave · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · Esc: end"}</span>}
+            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}{isTouch ? "one finger: move · two: look around" : "mouse, arrows: move · click: hold the mouse · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · Esc: end"}</span>}
           </div>
         )}
       </div>
