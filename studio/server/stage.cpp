@@ -190,6 +190,7 @@ void Stage::replay() {
     const bool is_far = seeker.is_far(wish->tick);
     if (is_far) wait_for_glimpse(*wish);
     const Turn turn = is_far ? wait_for_turn() : nullptr;
+    if (is_far && !turn) continue;
     const Result<bool> there = seeker.go_to(wish->tick, [this] { return is_outdated(); });
     if (!there) outbox_->send(stage_failed(number_, there.errors())), moments_->rest(Moments::Rest::none);
     if (!there || !*there) continue;
