@@ -13,10 +13,10 @@ namespace {
 constexpr double kShare = 0.95;
 constexpr double kStep = 0.25;  // between points of the surface, in spacings
 
-/// A point of a surface, the area that it stands for, and its distance from what is measured.
+/// A point of a boundary, how much it counts, and its distance from the other one.
 struct Sample {
   Vec3 at;              ///< [m]
-  double area = 1;      ///< [m^2]
+  double weight = 0;    ///< area [m^2], or tissue [spacings cubed]
   double distance = 0;  ///< [m]
 };
 
@@ -51,7 +51,8 @@ std::vector<Sample> from_surface(const CheckedMesh& mesh, const Cover& cover, do
   return samples;
 }
 
-/// The outermost points of the outer spheres, with their distances from the surface.
+/// The outermost points of the outer spheres, each with the tissue that it stands for, and their distances from the
+/// surface. A sphere far outside, at the corner of a cell that the surface just meets, stands for little.
 std::vector<Sample> from_spheres(const Cover& cover, const std::vector<double>& depth, double radius) {
   std::vector<Sample> samples;
   const CellLookup lookup(cover.lattice, cover.cell);
@@ -63,18 +64,19 @@ std::vector<Sample> from_spheres(const Cover& cover, const std::vector<double>& 
         beside[axis] += step;
         is_outer = is_outer || lookup.find(beside) < 0;
       }
-    if (is_outer) samples.push_back({cover.lattice.at(cover.cell[n]), 1, std::abs(radius - depth[n])});
+    if (is_outer)
+      samples.push_back({cover.lattice.at(cover.cell[n]), cover.shares.sphere[n], std::abs(radius - depth[n])});
   }
   return samples;
 }
 
-/// The distance within which so much of the area lies, and the largest.
+/// The distance within which so much of the weight lies, and the largest.
 ShapeError figures_of(std::vector<Sample> samples) {
   std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) { return a.distance < b.distance; });
   double whole = 0, sum = 0;
-  for (const Sample& sample : samples) whole += sample.area;
+  for (const Sample& sample : samples) whole += sample.weight;
   for (const Sample& sample : samples)
-    if ((sum += sample.area) >= kShare * whole) return {sample.distance, samples.back().distance};
+    if ((sum += sample.weight) >= kShare * whole) return {sample.distance, samples.back().distance};
   return {};
 }
 
