@@ -1,6 +1,7 @@
 // An author at work on one scene: dragging, undoing, the keyboard alone, closing and killing: author_work_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { copyFileSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { authorOf } from "./author_page.mjs";
@@ -95,12 +96,11 @@ test("spheres are drawn in the colours of their layers, and those that never mov
   assert.equal(dots.length, 2);
   const kBlue = [127, 184, 255], [outer, inner, anchored] = await hues([...dots, kBlue]);
   await picture(page, "author-layers");
-  assert.ok(outer > 3000 && inner > 50 && anchored > 300, `pixels of layer 1, layer 2 and anchored: ${outer}, ${inner}, ${anchored}`);
-  assert.ok(outer > 3 * inner, "the inner layer is behind the outer one");
   await button("surface").click();
   await page.waitForTimeout(300);
-  const [, none, neither] = await hues([...dots, kBlue]);
-  assert.ok(none < 0.2 * inner && neither < 0.2 * anchored, `${none} and ${neither} pixels without spheres`);
+  const [, none, neither] = await hues([...dots, kBlue]); // of handles and rings
+  assert.ok(outer > 3000 && inner - none > 100 && anchored - neither > 300, `pixels of layer 1, layer 2 and anchored: ${outer}, ${inner} - ${none}, ${anchored} - ${neither}`);
+  assert.ok(outer > 3 * (inner - none), "the inner layer is behind the outer one");
 });
 
 test("the scatter in full is that of the command", async () => {
@@ -158,7 +158,7 @@ test("changes of one value within half a second are one step", async () => {
 
 test("200 steps of all kinds are undone and done again, each as it was", async () => {
   await page.click("#tab-place");
-  const before = await text(), steps = [before], canvas = await page.locator(".view > canvas").boundingBox();
+  const before = await text(), steps = [before];
   const did = async (what) => {
     const now = await text();
     assert.notEqual(now, steps.at(-1), `step ${steps.length}, ${what}`);
@@ -192,9 +192,9 @@ test("200 steps of all kinds are undone and done again, each as it was", async (
     await page.locator(".remove").click();
     await did("remove it");
     await row(`tip ${round}`).click();
+    await page.waitForSelector(`#panel h2:has-text('probe: tip ${round}')`);
     await page.keyboard.press("Delete");
     await did("remove the probe by key");
-    assert.ok(canvas.width > 0);
   }
   assert.equal(steps.length, 201);
   for (let i = 199; i >= 0; --i) {
@@ -219,7 +219,7 @@ async function tabTo(locator, key = "Tab") {
 test("import, filling, tools and anchors are worked by the keyboard alone", async () => {
   await page.locator("header nav button:has-text('Author')").focus();
   // A mesh is chosen, named and imported.
-  const mesh = join(folder, "typed.obj");
+  const elsewhere = mkdtempSync(join(tmpdir(), "ctpm-mesh-")), mesh = join(elsewhere, "typed.obj");
   copyFileSync(join(paths.source, "scenes", "organs", "kidney.obj"), mesh);
   await tabTo(page.locator(".pick input"));
   const chooser = page.waitForEvent("filechooser");
@@ -234,14 +234,14 @@ test("import, filling, tools and anchors are worked by the keyboard alone", asyn
   await page.keyboard.type("6");
   await tabTo(page.locator("aside .field:has-text('scene to write') input"));
   await page.keyboard.press("Control+a");
-  await page.keyboard.type("typed.json");
-  rmSync(mesh); // the browser has it
+  await page.keyboard.type("typed-scene.json");
   await tabTo(button("Import", "aside"));
   await page.keyboard.press("Enter");
-  await page.waitForSelector("aside .good:has-text('typed.json')");
+  await page.waitForSelector("aside .good:has-text('typed-scene.json')");
   await settled();
+  rmSync(elsewhere, { recursive: true });
   // The filling.
-  const typed = async () => JSON.parse(await text("typed.json"));
+  const typed = async () => JSON.parse(await text("typed-scene.json"));
   await tabTo(page.locator("#tab-filling"));
   await page.keyboard.press("Enter");
   assert.deepEqual(await outOfReach(page), []);
@@ -289,8 +289,8 @@ test("import, filling, tools and anchors are worked by the keyboard alone", asyn
   await page.keyboard.press("Escape");
   assert.equal(await button("paint", ".objects").getAttribute("aria-pressed"), "false");
   await page.keyboard.press("Control+s");
-  await page.waitForFunction(() => localStorage.getItem("ctpm.draft:typed.json") === null);
-  const checked = ctpm(folder, "check", "typed.json");
+  await page.waitForFunction(() => localStorage.getItem("ctpm.draft:typed-scene.json") === null);
+  const checked = ctpm(folder, "check", "typed-scene.json");
   assert.equal(checked.code, 0, checked.err);
   await openScene();
 });
