@@ -482,7 +482,7 @@ test("from a pair of sessions to a video of its worst moment", async () => {
   const [, shown] = / ([-\d.]+) s$/.exec(await page.locator(".captions .first").innerText());
   await page.click("#tab-export");
   await page.locator('#panel .field:has-text("file in the folder") input').fill("worst.avi");
-  await page.click("#panel button:has-text('1 s around')");
+  await page.click("#panel button:has-text('1 s before')");
   await page.click("#panel button.main");
   await page.waitForSelector("#panel .good:has-text('worst.avi')");
   console.log(`a video of the worst moment ${((Date.now() - began) / 1e3).toFixed(1)} s after the comparison was opened`);
