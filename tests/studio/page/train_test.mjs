@@ -4,7 +4,7 @@ import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "no
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { openDevice } from "./igtl.mjs";
-import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings, takeUp } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm";
 const kByMouse = join(paths.pictures, "by-mouse.ctpm"); // for another build: another_build.sh
@@ -103,16 +103,14 @@ test("the mouse leads one of two hands, and the other one stays", async () => {
   assert.equal(await pressed("right hand"), "true");
   assert.equal(await pressed("ball"), "true");
   assert.ok(await page.locator(".transport button:has-text('scalpel')").isDisabled(), "it is in the other hand");
-  const box = await page.locator(".view canvas").boundingBox();
-  const middle = { x: box.x + box.width / 2, y: box.y + 60 };
+  const middle = await takeUp(page);
   await drag(middle, { x: 0, y: 150 }, 60);
   await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /force, right0?\.?0*[1-9]/.test(d.textContent)));
   await page.keyboard.press("x");
   await page.waitForFunction(() => document.querySelector(".transport button[aria-pressed=true]").textContent.includes("left hand"));
   assert.equal(await pressed("scalpel"), "true");
   const held = await reading(page, "force, right");
-  await page.mouse.move(middle.x, middle.y);
-  await drag(middle, { x: -30, y: 80 }, 30);
+  await drag({ x: middle.x, y: middle.y + 150 }, { x: -30, y: 80 }, 30);
   assert.ok((await reading(page, "force, right")) > 0.3 * held, "the ball still presses");
   await picture(page, "train-two-hands");
   assert.deepEqual(await seriousFindings(page), []);
@@ -147,9 +145,7 @@ test("the wheel moves the tool away from the viewer, and the pointer slows as th
   await page.locator("aside input").first().fill("wheel.ctpm");
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".view.running");
-  const box = await page.locator(".view canvas").boundingBox();
-  const middle = { x: box.x + box.width / 2, y: box.y + 60 };
-  await page.mouse.move(middle.x, middle.y);
+  const middle = await takeUp(page);
   const start = await handAtRest();
   const roll = async (notches) => {
     for (let i = 0; i < Math.abs(notches); ++i) await page.mouse.wheel(0, notches > 0 ? -100 : 100);
@@ -205,6 +201,58 @@ test("the wheel moves the tool away from the viewer, and the pointer slows as th
     .map((row) => row.slice(3, 6).map((mm) => Number(mm) / 1e3));
   const deepest = Math.max(...rows.map((place) => dot(minus(place, start), deep)));
   assert.ok(Math.abs(deepest - 15e-3) < 1.5e-3, `${deepest}`); // the virtual coupling overshoots
+  await page.click("button:has-text('Train again')");
+});
+
+test("the pointer takes the tool up where it is, and carries nothing along from where it came in", async () => {
+  const { right, up } = handAxes();
+  await page.locator("aside input").first().fill("");
+  await page.mouse.move(2, 700);
+  await page.click(".list button:has-text('kidney')");
+  await page.waitForSelector(".view.running");
+  await page.waitForSelector(".take-up");
+  const box = await page.locator(".view > canvas").boundingBox(), start = await handAtRest();
+  const stays = async (how) => assert.ok(Math.hypot(...minus(await handAtRest(), start)) < 1e-9, how);
+  // Over the whole organ, and out of the picture and in again.
+  const low = box.y + 0.7 * box.height;
+  await drag({ x: box.x + 10, y: low }, { x: box.width - 100, y: 0 }, 30);
+  await stays("a pointer that crosses the picture");
+  await picture(page, "train-take-up");
+  await page.mouse.move(box.x + box.width + 100, low);
+  await page.mouse.move(box.x + box.width - 200, low);
+  await stays("a pointer that comes in again");
+  assert.equal(await reading(page, "touched"), 0);
+  // At the tool it is taken up, and then follows, by as much as the pointer goes.
+  const at = await takeUp(page);
+  await stays("taking it up");
+  assert.equal(await page.locator(".take-up").count(), 0);
+  await drag(at, { x: 20, y: 0 }, 5);
+  const moved = minus(await handAtRest(), start), by = dot(moved, right);
+  assert.ok(by > 2e-3 && by < 15e-3 && Math.abs(dot(moved, up)) < 1e-6, `${moved}`);
+  await drag({ x: at.x + 20, y: at.y }, { x: -20, y: 0 }, 5);
+  assert.ok(Math.hypot(...minus(await handAtRest(), start)) < 1e-5, "and back");
+  // While the right button turns the view it stays, and does not catch up.
+  const here = await handAtRest();
+  await page.mouse.down({ button: "right" });
+  await drag(at, { x: 60, y: 0 }, 6);
+  await page.mouse.up({ button: "right" });
+  await page.mouse.move(at.x + 61, at.y);
+  await page.mouse.move(at.x + 61, at.y);
+  assert.ok(Math.hypot(...minus(await handAtRest(), here)) < 2e-3, `${minus(await handAtRest(), here)}`);
+  // A pointer that left lets go, and a press takes it up from anywhere.
+  await page.mouse.move(box.x + box.width + 100, low);
+  await page.waitForSelector(".take-up");
+  await page.mouse.move(box.x + 100, low);
+  const left = await handAtRest();
+  await page.mouse.down();
+  await page.waitForSelector(".view.held");
+  await page.mouse.move(box.x + 115, low, { steps: 3 });
+  await page.mouse.up();
+  const far = Math.hypot(...minus(await handAtRest(), left));
+  assert.ok(far > 1e-3 && far < 15e-3, `${far}`);
+  await page.evaluate(() => document.exitPointerLock());
+  await page.keyboard.press("Escape");
+  await page.waitForSelector("button:has-text('Train again')");
   await page.click("button:has-text('Train again')");
 });
 
@@ -271,8 +319,7 @@ test("the mouse presses, cuts and records", async () => {
   await page.locator("aside .field:has-text('expert') select").selectOption(kExpert);
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".view.running");
-  const box = await page.locator(".view canvas").boundingBox();
-  const middle = { x: box.x + box.width / 2, y: box.y + 60 };
+  const middle = await takeUp(page);
   assert.equal((await page.locator(".recorded").textContent()).trim(), "records mine.ctpm");
   await page.evaluate(() => {
     globalThis.heard = [];
@@ -417,8 +464,7 @@ test("a recording is there up to the moment when the program was killed", async 
   await page.locator("aside input").first().fill("killed.ctpm");
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".view.running");
-  const box = await page.locator(".view canvas").boundingBox();
-  const middle = { x: box.x + box.width / 2, y: box.y + 60 };
+  const middle = await takeUp(page);
   await drag(middle, { x: 0, y: 150 }, 60);
   await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 2.5);
   const complaints = studio.complaints.length;
