@@ -195,6 +195,8 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onAuth
     return () => target.removeEventListener(kind, take);
   }, []);
   const press = (event: PointerEvent) => {
+    // What holds the mouse needs no looking around, and a locked pointer cannot be captured for it.
+    if (phase === "running" && !trainer?.awaited && event.pointerType === "mouse" && (event.button === 0 || document.pointerLockElement)) event.stopImmediatePropagation();
     if (phase !== "running" || trainer?.awaited || event.button !== 0) return;
     hold(true); // wherever it is
     if (event.pointerType === "mouse") void Promise.resolve(canvas.current?.requestPointerLock?.()).catch(() => {});

@@ -128,7 +128,7 @@ function handAxes() {
   return { eye: camera.eye_mm.map((c) => c / 1e3), right: [y / far, -x / far, 0], up: [0, 0, 1], deep: [x / far, y / far, 0] };
 }
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const minus = (a, b) => a.map((x, i) => x - b[i]);
+const minus = (a, b) => a.map((x, i) => x - b[i]), scaled = (a, by) => a.map((x) => x * by);
 
 /** Where the hand is when it has followed the pointer. */
 async function handAtRest() {
@@ -375,6 +375,13 @@ test("the session verifies to the bit, and is compared at once", async () => {
   const same = JSON.parse(ctpm(folder, "info", "again.ctpm", "--json").out);
   assert.ok(Math.abs(same.severed - info.severed) <= 0.02 * info.severed, `${same.severed} and ${info.severed} elements are severed`);
   for (const key of ["max_force_n", "max_depth_m"]) assert.ok(Math.abs(same[key] / info[key] - 1) < 0.02, `${key}: ${same[key]} and ${info[key]}`);
+  // Its force in each tick, not only the largest one.
+  assert.equal(ctpm(folder, "replay", "again.ctpm", "--csv", "again.csv").code, 0);
+  const [mine, table] = ["mine.csv", "again.csv"].map((name) => readFileSync(join(folder, name), "utf8").trim().split("\n").slice(1).map((row) => Number(row.split(",")[14])));
+  assert.equal(mine.length, table.length);
+  const apart = Math.sqrt(mine.reduce((sum, force, i) => sum + (force - table[i]) ** 2, 0) / mine.length) / Math.max(...mine);
+  console.log(`training: the forces of ${mine.length} ticks are apart by ${(100 * apart).toFixed(3)} % of the largest (root of the mean square)`);
+  assert.ok(apart < 0.02, `${apart}`);
   console.log(`training: as a table of its motion ${same.severed} of ${info.severed} elements, ${same.max_force_n} and ${info.max_force_n} N`);
   console.log(`training: pose to tick p50 ${(1e3 * info.values.device_pose_wait_p50_s).toFixed(1)} ms, p99 ${(1e3 * info.values.device_pose_wait_p99_s).toFixed(1)} ms (on the way p99 ${(1e3 * info.values.device_pose_way_p99_s).toFixed(1)} ms), ${(1e2 * info.values.device_poses_within_5ms).toFixed(1)} % within 5 ms; between poses at most ${(1e3 * info.values.device_longest_gap_s).toFixed(0)} ms`);
 });
@@ -402,6 +409,28 @@ test("a gamepad leads the tool: the trigger presses, the shoulder changes it", a
   await page.locator("aside input").first().fill("");
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".transport .hint:has-text('gamepad')");
+  // Sticks: sideways, deep and turns about two axes; a stick that rests a little off its middle does nothing.
+  const { right, up, deep } = handAxes(), start = await handAtRest();
+  const hold = async (axis, value, time = 250) => {
+    await page.evaluate(([axis, value]) => (globalThis.pad.axes[axis] = value), [axis, value]);
+    await page.waitForTimeout(time);
+    await page.evaluate((axis) => (globalThis.pad.axes[axis] = 0), axis);
+    return handAtRest();
+  };
+  assert.ok(Math.hypot(...minus(await hold(0, 0.1), start)) < 1e-9, "a stick at rest");
+  for (const [axis, way, others] of [[0, right, [up, deep]], [1, scaled(deep, -1), [right, up]]]) {
+    const from = await handAtRest(), by = minus(await hold(axis, 1), from);
+    assert.ok(dot(by, way) > 4e-3 && others.every((other) => Math.abs(dot(by, other)) < 1e-5), `stick ${axis}: ${by}`);
+    await hold(axis, -1);
+  }
+  for (const [axis, part] of [[2, 2], [3, 1]]) {
+    const [w, ...from] = studio.hand().orientation;
+    await hold(axis, axis === 2 ? 1 : -1);
+    const [W, ...to] = studio.hand().orientation, cross = [from[1] * to[2] - from[2] * to[1], from[2] * to[0] - from[0] * to[2], from[0] * to[1] - from[1] * to[0]];
+    const turn = to.map((x, i) => w * x - W * from[i] - cross[i]); // about the axes of the tool
+    assert.ok(turn[part - 1] > 0.05 && turn.every((x, i) => i === part - 1 || Math.abs(x) < 1e-6), `stick ${axis}: ${turn}`);
+    await hold(axis, axis === 2 ? -1 : 1);
+  }
   await page.evaluate(() => (globalThis.pad.buttons[7].value = 1));
   await page.waitForFunction(() => Number.parseFloat(document.querySelector(".force-bar output").textContent) > 0.1);
   await page.evaluate(() => (globalThis.pad.buttons[7].value = 0, globalThis.pad.buttons[6].value = 1));

@@ -225,7 +225,7 @@ TEST_F(Reviewing, AComparisonSaysHowFarItIsAndCanBeStopped) {
   nlohmann::json at;
   const nlohmann::json answer = testing::stopped(client, "session.compare", {{"expert", kCut}, {"trainee", kCut}}, &at);
   EXPECT_NE(answer["errors"].dump().find("stopped"), std::string::npos) << answer;
-  const nlohmann::json verdict = testing::stopped(client, "session.verify", {{"path", kCut}});
+  const nlohmann::json verdict = testing::stopped(client, "session.verify", {{"path", kPress}});
   EXPECT_NE(verdict["errors"].dump().find("stopped"), std::string::npos) << verdict;
   EXPECT_EQ(at["total"], 2 * recordings::SessionReader::open(file(kCut))->tick_count());
   EXPECT_LT(at["done"], at["total"]);

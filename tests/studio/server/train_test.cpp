@@ -179,27 +179,43 @@ TEST_F(TrainingTest, APageThatDoesNotReadFor10SecondsHoldsUpNoTickAndThenSeesThe
   EXPECT_LT(ended["ticks"].get<double>() - tick, 0.5 * (tick - before)) << "it was not the newest one";
 }
 
-/// What came for a page in a training, until it ended: of each frame the triangles that came before it, without their
-/// number, or nothing, and the elements severed by then.
+/// What comes for a page in a training: of each frame the triangles that came before it, without their number, or
+/// nothing, and the elements severed by then.
 struct ShownFrame {
   std::string triangles;
   std::uint32_t severed = 0;
 };
-std::vector<ShownFrame> frames_until_end(SocketClient& client) {
-  std::vector<ShownFrame> frames;
-  for (ShownFrame next;;) {
-    const auto message = client.receive();
+class ShownFrames {
+ public:
+  explicit ShownFrames(SocketClient& client) : client_(client) {}
+  /// Takes what has come.
+  void read() {
+    while (client_.has_news()) take();
+  }
+  std::vector<ShownFrame> until_end() {
+    while (!has_ended_) take();
+    return std::move(frames_);
+  }
+
+ private:
+  void take() {
+    const auto message = client_.receive();
     if (message.is_text) {
-      if (nlohmann::json::parse(message.bytes).value("event", "") == "train_ended") return frames;
-      continue;
+      has_ended_ = has_ended_ || nlohmann::json::parse(message.bytes).value("event", "") == "train_ended";
+      return;
     }
     const std::uint32_t kind = value_at<std::uint32_t>(message.bytes, 0);
-    if (kind == 1) next.triangles = message.bytes.substr(12);
-    if (kind != 2) continue;
-    next.severed = value_at<std::uint32_t>(message.bytes, 92);
-    frames.push_back(std::exchange(next, {}));
+    if (kind == 1) next_.triangles = message.bytes.substr(12);
+    if (kind != 2) return;
+    next_.severed = value_at<std::uint32_t>(message.bytes, 92);
+    frames_.push_back(std::exchange(next_, {}));
   }
-}
+
+  SocketClient& client_;
+  ShownFrame next_;
+  std::vector<ShownFrame> frames_;
+  bool has_ended_ = false;
+};
 
 TEST_F(TrainingTest, TrianglesComeAtItsBeginningAndThenOnlyWhenACutChangedThem) {
   fs::copy(fs::path(CTPM_SHIPPED_SESSIONS) / "kidney-cut-expert.ctpm", folder_.path() / "expert.ctpm");
@@ -208,17 +224,20 @@ TEST_F(TrainingTest, TrianglesComeAtItsBeginningAndThenOnlyWhenACutChangedThem) 
   const auto train = [&](const auto& lead) {
     const nlohmann::json begun = client.call("train.begin", {{"scene", "kidney.json"}, {"stage", 2}});
     EXPECT_TRUE(begun.contains("result")) << begun;
-    lead(begun["result"]["view"]);
+    ShownFrames frames(client);
+    lead(begun["result"]["view"], frames);
     client.send({{"id", 99}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
-    return frames_until_end(client);
+    return frames.until_end();
   };
   // A press moves every vertex, and changes no triangle.
-  const std::vector<ShownFrame> pressed = train([&](const nlohmann::json& view) { press(client, view, 150, 1); });
+  const std::vector<ShownFrame> pressed =
+      train([&](const nlohmann::json& view, ShownFrames&) { press(client, view, 150, 1); });
   ASSERT_GT(pressed.size(), 20u);
-  EXPECT_EQ(std::count_if(pressed.begin(), pressed.end(), [](const ShownFrame& f) { return !f.triangles.empty(); }), 1);
+  // Those of the beginning may come before the answer.
+  EXPECT_LE(std::count_if(pressed.begin(), pressed.end(), [](const ShownFrame& f) { return !f.triangles.empty(); }), 1);
   // The expert's cut, led once more.
   const nlohmann::json motion = client.call("session.motion", {{"path", "expert.ctpm"}, {"rate_hz", 125}})["result"];
-  const std::vector<ShownFrame> cut = train([&](const nlohmann::json&) {
+  const std::vector<ShownFrame> cut = train([&](const nlohmann::json&, ShownFrames& frames) {
     const auto begin = std::chrono::steady_clock::now();
     double time = 0;
     for (const nlohmann::json& pose : motion["poses"]) {
@@ -230,13 +249,15 @@ TEST_F(TrainingTest, TrianglesComeAtItsBeginningAndThenOnlyWhenACutChangedThem) 
                      {"orientation", {pose[4], pose[5], pose[6], pose[7]}},
                      {"buttons", 1 << pose[0].get<int>()},
                      {"time_s", 100 + time}}}});
+      frames.read();
     }
     std::this_thread::sleep_until(begin + std::chrono::duration<double>(time + 0.5));  // it rests
+    frames.read();
   });
   int came = 0, before = 0, alike = 0, severed_last = 0, resting = 0;
   std::string triangles;
   for (const ShownFrame& frame : cut) {
-    before += came == 1 && frame.triangles.empty();
+    before += came <= 1 && frame.triangles.empty();
     resting = frame.triangles.empty() ? resting + 1 : 0;
     severed_last = int(frame.severed);
     if (frame.triangles.empty()) continue;
@@ -247,7 +268,7 @@ TEST_F(TrainingTest, TrianglesComeAtItsBeginningAndThenOnlyWhenACutChangedThem) 
               int(cut.size()), came, before, resting);
   EXPECT_GT(severed_last, 10);
   EXPECT_GT(came, 3);
-  EXPECT_LE(alike, 1) << "the blade may cut nothing but air for a moment";
+  EXPECT_EQ(alike, 0) << "nothing was cut since the triangles before";
   EXPECT_GT(before, 10) << "until the blade is in the tissue they are those of the beginning";
   EXPECT_GT(resting, 10) << "a blade that rests cuts nothing";
 }
