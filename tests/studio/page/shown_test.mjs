@@ -175,8 +175,9 @@ test("the surface that the page draws covers what the exported picture of the sa
   const overlap = both / either;
   console.log(`of the tissue in either picture, ${(100 * overlap).toFixed(1)} % is in both (${either} pixels)`);
   assert.ok(either > 0.1 * width * height, "there is an organ");
-  // A pixel around it is 1 %; a hundredth of its width in another place, or another size of it, is 2 %.
-  assert.ok(overlap > 0.975, `${overlap}`);
+  // The film's picture is up to two rows lower, and a pixel around the organ is 1 %. Another place of it by a fiftieth of the
+  // picture's width, or a size that differs by as much, is more than 4 %.
+  assert.ok(overlap > 0.96, `${overlap}`);
 });
 
 test("the arrow is as long as the force, and points as it does", async () => {
@@ -272,9 +273,10 @@ test("the shown commands verify and record do what the buttons did", async () =>
   ofCommand.close();
   const infos = ["device.ctpm", "command.ctpm"].map((name) => JSON.parse(ctpm(folder, "info", name, "--json").out));
   for (const { metadata, values } of infos) assert.ok(metadata.source === "igtl-listen" && values.device_samples > 50, JSON.stringify(values));
-  const [button, command] = infos.map(({ max_force_n }) => max_force_n);
-  console.log(`a device pressed ${button} N by the button, ${command} N by its command`);
-  assert.ok(button > 0.2 && Math.abs(command / button - 1) < 0.03, `${button} and ${command} N`);
+  // Where it was held at the end; on the way down both depend on when its poses came.
+  const [button, command] = ["device.ctpm", "command.ctpm"].map((name) => table(name).at(-1).force);
+  console.log(`a device holds ${button} N by the button, ${command} N by its command`);
+  assert.ok(button > 0.2 && Math.abs(command / button - 1) < 0.02, `${button} and ${command} N`);
   assert.equal(ctpm(folder, "verify", "command.ctpm").code, 0);
   await field("in the hand").locator("select").selectOption("");
 });
