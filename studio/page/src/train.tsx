@@ -248,7 +248,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onAuth
           </Empty>
         )}
         {phase === "running" && frame && trainer && !trainer.awaited && !trainer.isHeld && !isTouch && (
-          <div ref={ring} class="take-up" hidden aria-hidden="true"><span>move the pointer here to take up the tool</span></div>
+          <div ref={ring} class="take-up" hidden aria-hidden="true"><span>move the pointer here to take it up</span></div>
         )}
         {phase === "running" && frame && (
           <div class="force-bar" role="meter" aria-label="Force" aria-valuemin={0} aria-valuemax={limit} aria-valuenow={Number(force.toFixed(2))}>
