@@ -12,6 +12,7 @@
 #include "importers/lattice.h"
 #include "importers/refine.h"
 #include "importers/scan_rows.h"
+#include "importers/shape_error.h"
 #include "importers/surface_index.h"
 #include "importers/text.h"
 #include "importers/topology.h"
@@ -328,6 +329,7 @@ Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options) 
   for_each_element(cover, [&](std::size_t, std::size_t) { ++report.edges; });
   for (const double share : cover.shares.sphere) report.filled_volume += share * spacing * spacing * spacing;
   measure_surface(cover, mesh, options.threads, report);
+  report.shape = measure_shape(mesh, cover, organ.depth, radius, options.threads);
   organ.cell = std::move(cover.cell);
   organ.shares = std::move(cover.shares);
   tell("surface", 0.7);

@@ -69,6 +69,7 @@ std::string to_text(const ImportReport& report) {
   text += "  drawn with " + counted(fill.surface_triangles, "triangle") + "\n";
   text += "  from the surface to the nearest sphere: mean " + mm_text(fill.mean_distance) + ", at most " +
           mm_text(fill.largest_distance) + "\n";
+  text += "  " + to_text(fill.shape) + "\n";
   return text;
 }
 

@@ -138,7 +138,9 @@ void write_organ(output::JsonWriter& json, const authoring::ImportedPart& organ)
   json.member("surface_triangles", r.fill.surface_triangles);
   json.member("spheres", r.fill.spheres).member("edges", r.fill.edges).member("volume_ml", r.fill.filled_volume * 1e6);
   json.member("largest_distance_mm", r.fill.largest_distance * 1e3)
-      .member("mean_distance_mm", r.fill.mean_distance * 1e3);
+      .member("mean_distance_mm", r.fill.mean_distance * 1e3)
+      .member("shape_error_p95_mm", r.fill.shape.p95 * 1e3)
+      .member("shape_error_largest_mm", r.fill.shape.largest * 1e3);
   json.member("anchored", organ.anchored);
   if (organ.stiffness_scale) json.member("stiffness_scale", *organ.stiffness_scale);
   json.key("spheres_per_layer").begin_list();

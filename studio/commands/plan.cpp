@@ -17,6 +17,7 @@
 #include "studio/output/files.h"
 #include "studio/output/json_writer.h"
 #include "studio/output/number_text.h"
+#include "studio/output/printable.h"
 #include "studio/session/session_cost.h"
 
 namespace ctpm::commands {
@@ -165,6 +166,26 @@ Errors find_misses(const scenes::Script& script, const session::SessionCost& cos
   return misses;
 }
 
+/// The shape error of each organ that fills a mesh.
+void write_shapes(output::JsonWriter& json, const loading::LoadedScene& scene) {
+  json.begin_list();
+  for (std::size_t i = 0; i < scene.reports.size(); ++i) {
+    const importers::ImportReport& report = scene.reports[i];
+    if (report.path.empty()) continue;
+    json.begin_object().member("organ", scene.scene.spec.organs[i].name);
+    json.member("p95_mm", report.fill.shape.p95 * 1e3).member("largest_mm", report.fill.shape.largest * 1e3);
+    json.end_object();
+  }
+  json.end_list();
+}
+
+void print_shapes(const loading::LoadedScene& scene) {
+  for (std::size_t i = 0; i < scene.reports.size(); ++i)
+    if (!scene.reports[i].path.empty())
+      print("shape of %s, %s\n", output::printable(scene.scene.spec.organs[i].name).c_str(),
+            importers::to_text(scene.reports[i].fill.shape).c_str());
+}
+
 /// What is told of a scene.
 struct Plan {
   const loading::LoadedScene& scene;
@@ -270,7 +291,8 @@ void print_json(const std::string& path, const Plan& plan, const std::string& so
         .member("why", f.why)
         .member("bytes", f.bytes)
         .end_object();
-  json.end_list().key("thin_parts"), write_warnings(json, plan.thin_parts);
+  json.end_list().key("shape_errors"), write_shapes(json, plan.scene);
+  json.key("thin_parts"), write_warnings(json, plan.thin_parts);
   json.key("oddities"), write_warnings(json, plan.oddities);
   std::fputs(json.end_object().text().c_str(), stdout);
 }
@@ -340,6 +362,7 @@ void print_text(const Plan& plan, const std::string& solver) {
         print("  %-30s %10s  %s\n", f.name.c_str(),
               f.bytes > 0 ? (std::to_string((f.bytes + 1023) / 1024) + " KiB").c_str() : "", f.why.c_str());
   }
+  print_shapes(plan.scene);
   print("memory: %.1f KiB, %zu bytes a sphere\n", double(plan.bytes) / 1024,
         plan.bytes / std::max<std::size_t>(1, plan.scene.built.model.sphere_count()));
   print("solver: %s\n        because %s\n", solver.c_str(), plan.scene.built.integrator.reason.c_str());

@@ -54,6 +54,14 @@ scenes::ObstacleMesh mesh_of(const std::string& scene_path, const scenes::Obstac
   return {};
 }
 
+/// The progress of one organ of `count` within that of all.
+importers::Progress progress_of(const importers::Progress& all, std::size_t organ, std::size_t count) {
+  if (!all) return {};
+  return [&all, organ, count](const std::string& stage, double fraction) {
+    all(stage, (double(organ) + fraction) / double(count));
+  };
+}
+
 }  // namespace
 
 void move_organ(FilledOrgan& organ, Vec3 by) {
@@ -62,11 +70,12 @@ void move_organ(FilledOrgan& organ, Vec3 by) {
 }
 
 Result<importers::ImportedOrgan> fill_of(const std::string& scene_path, const scenes::OrganSpec& organ,
-                                         const std::function<bool()>& should_stop, Vec3 lattice_shift) {
+                                         const std::function<bool()>& should_stop, Vec3 lattice_shift,
+                                         const importers::Progress& progress) {
   if (!organ.rig) {
     importers::ImportOptions options = import_options_of(organ);
     options.lattice_shift = lattice_shift;
-    options.should_stop = should_stop;
+    options.should_stop = should_stop, options.progress = progress;
     Result<importers::ImportedOrgan> filled =
         importers::import_organ(scenes::mesh_path(scene_path, organ.mesh), options);
     if (filled) move(*filled, organ.at);
@@ -81,7 +90,7 @@ Result<importers::ImportedOrgan> fill_of(const std::string& scene_path, const sc
 
 Result<LoadedScene> load_whole_scene(const std::string& path, const scenes::LoadOptions& options,
                                      const std::function<void(scenes::SceneSpec&)>& change,
-                                     const std::function<bool()>& should_stop) {
+                                     const std::function<bool()>& should_stop, const importers::Progress& progress) {
   Result<scenes::SceneDraft> draft = scenes::load_draft(path, options);
   if (!draft) return draft.errors();
   if (change && draft->problems.is_empty()) change(draft->scene.spec);
@@ -92,7 +101,8 @@ Result<LoadedScene> load_whole_scene(const std::string& path, const scenes::Load
     importers::ImportedOrgan filled;
     mesh_errors.emplace_back();
     if (scenes::can_be_filled(draft->problems, i)) {
-      Result<importers::ImportedOrgan> imported = fill_of(path, draft->scene.spec.organs[i], should_stop);
+      Result<importers::ImportedOrgan> imported = fill_of(path, draft->scene.spec.organs[i], should_stop, {},
+                                                          progress_of(progress, i, draft->scene.spec.organs.size()));
       if (imported)
         filled = *std::move(imported);
       else

@@ -27,17 +27,20 @@ struct LoadedScene {
 /// (importers::FillOptions), or its rig. Places in the report of a mesh are those of its file. Errors: those of the
 /// mesh. `should_stop`, if given, ends it with an error.
 Result<importers::ImportedOrgan> fill_of(const std::string& scene_path, const scenes::OrganSpec& organ,
-                                         const std::function<bool()>& should_stop = {}, Vec3 lattice_shift = {});
+                                         const std::function<bool()>& should_stop = {}, Vec3 lattice_shift = {},
+                                         const importers::Progress& progress = {});
 
 /// Moves a filled organ [m]: its spheres lie in it alike wherever it is.
 void move_organ(FilledOrgan& organ, Vec3 by);
 
 /// Reads a scene, imports its meshes and builds its Model. `change` may alter the scene between reading and importing.
-/// `should_stop`, if given, ends it with an error. Warnings are in LoadedScene::scene. Errors: those of the scene, its
-/// meshes and its Model, all at once, with places.
+/// `should_stop`, if given, ends it with an error; `progress` gets the stage and the fraction of the meshes that are
+/// filled. Warnings are in LoadedScene::scene. Errors: those of the scene, its meshes and its Model, all at once, with
+/// places.
 Result<LoadedScene> load_whole_scene(const std::string& path, const scenes::LoadOptions& options = {},
                                      const std::function<void(scenes::SceneSpec&)>& change = {},
-                                     const std::function<bool()>& should_stop = {});
+                                     const std::function<bool()>& should_stop = {},
+                                     const importers::Progress& progress = {});
 
 /// The Model of a loaded scene after `change`; the meshes are not read again. Errors: those of build_model().
 Result<scenes::BuiltScene> build_changed(const LoadedScene& scene,

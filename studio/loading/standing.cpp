@@ -45,8 +45,11 @@ bool Standing::stands() const {
 
 namespace {
 
+using Progress = std::function<void(std::int64_t done, std::int64_t most)>;
+
 std::optional<Standing> settle_from(State rest, const scenes::SceneSpec& scene, const Model& model,
-                                    std::optional<double> most_sag, const std::function<bool()>& should_stop) {
+                                    std::optional<double> most_sag, const std::function<bool()>& should_stop,
+                                    const Progress& progress) {
   const std::int64_t ticks = std::llround(scene.settle / model.tick);
   Standing standing;
   standing.state = std::move(rest);
@@ -63,6 +66,7 @@ std::optional<Standing> settle_from(State rest, const scenes::SceneSpec& scene, 
   constexpr double kAtRest = 1e-5;  // [m/s], where Stepper::settle() ends
   for (std::int64_t done = 0; done < ticks; done += kStretch) {
     if (should_stop && should_stop()) return std::nullopt;
+    if (progress) progress(done, ticks);
     const stepping::StepReport report = stepper.settle(standing.state, std::min(kStretch, ticks - done));
     standing.is_refused = stepping::is_refused(report.status);
     look();
@@ -77,15 +81,15 @@ std::optional<Standing> settle_from(State rest, const scenes::SceneSpec& scene, 
 }  // namespace
 
 std::optional<Standing> settle_scene(const scenes::SceneSpec& scene, const Model& model, std::optional<double> most_sag,
-                                     const std::function<bool()>& should_stop) {
-  return settle_from(rest_state(model), scene, model, most_sag, should_stop);
+                                     const std::function<bool()>& should_stop, const Progress& progress) {
+  return settle_from(rest_state(model), scene, model, most_sag, should_stop, progress);
 }
 
 std::optional<Standing> settle_without_tools(const scenes::SceneSpec& scene, Model& model,
                                              std::optional<double> most_sag, const std::function<bool()>& should_stop) {
   State rest = rest_state(model);
   const ToolsAside aside(model);
-  return settle_from(std::move(rest), scene, model, most_sag, should_stop);
+  return settle_from(std::move(rest), scene, model, most_sag, should_stop, {});
 }
 
 }  // namespace ctpm::loading

@@ -32,11 +32,12 @@ struct Standing {
 };
 
 /// Lets the Model of a scene come to rest as a session does before its first tick, for at most the scene's `settle_s`.
-/// Ends as soon as an organ sags by more than `most_sag` of its size; unset: never. None if `should_stop` ended it. The
-/// second lays the Model's tools aside meanwhile, which is sooner where the surfaces are fine; the result is the same.
+/// Ends as soon as an organ sags by more than `most_sag` of its size; unset: never. None if `should_stop` ended it.
+/// `progress` gets the ticks that are done, and how many there can be at most. The second lays the Model's tools aside
+/// meanwhile, which is sooner where the surfaces are fine; the result is the same.
 std::optional<Standing> settle_scene(const scenes::SceneSpec& scene, const Model& model,
-                                     std::optional<double> most_sag = {},
-                                     const std::function<bool()>& should_stop = {});
+                                     std::optional<double> most_sag = {}, const std::function<bool()>& should_stop = {},
+                                     const std::function<void(std::int64_t done, std::int64_t most)>& progress = {});
 std::optional<Standing> settle_without_tools(const scenes::SceneSpec& scene, Model& model,
                                              std::optional<double> most_sag = {},
                                              const std::function<bool()>& should_stop = {});

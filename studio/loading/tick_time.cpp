@@ -10,14 +10,20 @@
 #include "studio/loading/tools_aside.h"
 
 namespace ctpm::loading {
+namespace {
 
-std::optional<double> measure_tick(const Model& model, State state, const std::function<bool()>& should_stop) {
+constexpr int kWarmUp = kTicksToMeasure - kMeasuredTicks;
+
+}  // namespace
+
+std::optional<double> measure_tick(const Model& model, State state, const std::function<bool()>& should_stop,
+                                   const std::function<void(std::int64_t done)>& progress) {
   using Clock = std::chrono::steady_clock;
-  constexpr int kWarmUp = 20;
   stepping::Stepper stepper(model);
   std::vector<double> times;
-  for (int i = 0; i < kWarmUp + kMeasuredTicks; ++i) {
+  for (int i = 0; i < kTicksToMeasure; ++i) {
     if (should_stop && should_stop()) return std::nullopt;
+    if (progress) progress(i);
     const Clock::time_point start = Clock::now();
     (void)stepper.step(state, {});
     if (i >= kWarmUp) times.push_back(std::chrono::duration<double>(Clock::now() - start).count());
@@ -27,12 +33,11 @@ std::optional<double> measure_tick(const Model& model, State state, const std::f
 }
 
 std::optional<double> measure_tick_work(Model& model, const std::function<bool()>& should_stop) {
-  constexpr int kWarmUp = 20;
   State state = rest_state(model);
   const ToolsAside aside(model);
   stepping::Stepper stepper(model);
   std::clock_t start = 0;
-  for (int i = 0; i < kWarmUp + kMeasuredTicks; ++i) {
+  for (int i = 0; i < kTicksToMeasure; ++i) {
     if (should_stop && should_stop()) return std::nullopt;
     if (i == kWarmUp) start = std::clock();
     (void)stepper.step(state, {});

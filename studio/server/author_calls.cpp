@@ -125,6 +125,7 @@ Result<std::string> list_presets(Parameters& parameters, const CallContext&) {
     json.begin_object()
         .member("name", std::string(preset.name))
         .member("organ", std::string(preset.organ))
+        .member("source", std::string_view(preset.source))
         .member("radius_m", preset.sphere_radius)
         .end_object();
   return json.end_list().text();

@@ -31,7 +31,9 @@ void write_organs(output::JsonWriter& json, const loading::LoadedScene& scene) {
     for (std::int64_t sphere = first; sphere < end; ++sphere)
       anchored += model.held_axes[std::size_t(sphere)] == kAnchored;
     json.begin_object().member("spheres", scene.organs[i].centre.size()).member("anchored", anchored);
-    json.member("report", report.path.empty() ? std::string() : importers::to_text(report)).key("findings");
+    const bool is_filled = !report.path.empty();  // a rig has no mesh
+    json.member("report", is_filled ? importers::to_text(report) : std::string());
+    json.member("shape_error", is_filled ? importers::to_text(report.fill.shape) : std::string()).key("findings");
     write_findings(json, report.findings);
     json.end_object();
   }
@@ -60,7 +62,8 @@ Result<std::string> show_scene(Parameters& parameters, const CallContext& contex
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
   const Result<std::string> file = options.text ? context.folder.place(path) : context.folder.find(path);
   if (!file) return file.errors();
-  Result<loading::LoadedScene> loaded = loading::load_whole_scene(*file, options, {}, context.should_stop);
+  const auto told = [&](const std::string&, double share) { context.progress(std::int64_t(1000 * share), 1000); };
+  Result<loading::LoadedScene> loaded = loading::load_whole_scene(*file, options, {}, context.should_stop, told);
   if (!loaded) return loaded.errors();
   const auto kept = std::make_shared<KeptScene>(*std::move(loaded));
   const loading::LoadedScene& scene = kept->scene();
@@ -85,9 +88,18 @@ Result<std::string> measure_scene(Parameters& parameters, const CallContext& con
   const std::shared_ptr<KeptScene> kept = context.desk->kept(stage);
   if (!kept) return Error{"", "no scene is shown there", ""};
   const Model& model = kept->scene().built.model;
-  const std::shared_ptr<const recordings::SessionStart> start = kept->start(context.should_stop);
+  // In ticks: those in which it settles, of which it may not need all, and those that are measured.
+  std::int64_t settled = 0;
+  const auto settling = [&](std::int64_t done, std::int64_t most) {
+    settled = done;
+    context.progress(done, most + loading::kTicksToMeasure);
+  };
+  const auto measuring = [&](std::int64_t done) {
+    context.progress(settled + done, settled + loading::kTicksToMeasure);
+  };
+  const std::shared_ptr<const recordings::SessionStart> start = kept->start(context.should_stop, settling);
   const std::optional<double> time =
-      start ? loading::measure_tick(model, start->initial_state, context.should_stop) : std::nullopt;
+      start ? loading::measure_tick(model, start->initial_state, context.should_stop, measuring) : std::nullopt;
   if (!time) return Error{"", "stopped", ""};
   output::JsonWriter json;
   json.begin_object().member("measured_tick_time_s", *time).member("tick_s", model.tick);

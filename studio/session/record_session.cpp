@@ -15,12 +15,14 @@
 
 namespace ctpm::session {
 
-std::optional<recordings::SessionStart> start_session(const loading::LoadedScene& scene,
-                                                      const std::function<bool()>& should_stop) {
+std::optional<recordings::SessionStart> start_session(
+    const loading::LoadedScene& scene, const std::function<bool()>& should_stop,
+    const std::function<void(std::int64_t done, std::int64_t most)>& progress) {
   recordings::SessionStart start;
   start.scene_text = scene.scene.found_text;
   start.model = scene.built.model;
-  std::optional<loading::Standing> settled = loading::settle_scene(scene.scene.spec, start.model, {}, should_stop);
+  std::optional<loading::Standing> settled =
+      loading::settle_scene(scene.scene.spec, start.model, {}, should_stop, progress);
   if (!settled) return std::nullopt;
   start.initial_state = std::move(settled->state);
   start.build_fingerprint = version::build_fingerprint();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
@@ -19,9 +20,11 @@ struct RecordOutcome {
   recordings::SessionStatistics statistics;
 };
 
-/// The start of a session of `scene`, settled to rest. None if `should_stop` ended it.
-std::optional<recordings::SessionStart> start_session(const loading::LoadedScene& scene,
-                                                      const std::function<bool()>& should_stop);
+/// The start of a session of `scene`, settled to rest. None if `should_stop` ended it. `progress`: see
+/// loading::settle_scene().
+std::optional<recordings::SessionStart> start_session(
+    const loading::LoadedScene& scene, const std::function<bool()>& should_stop,
+    const std::function<void(std::int64_t done, std::int64_t most)>& progress = {});
 recordings::SessionStart start_session(const loading::LoadedScene& scene);
 
 /// The start of a session that continues the session in `file` from its State at `at_s` [s] and names it as its parent.

@@ -12,10 +12,12 @@ import { Empty, Problems, Readings, Section, ShownCommand } from "./parts";
 import type { Listing } from "./protocol";
 import { SceneEditor } from "./scene_editor";
 import type { Shown } from "./stage_scene";
-import { command } from "./text";
+import { command, counted } from "./text";
 import { kTurns, Viewer } from "./viewer";
 
+const kLookOnDisk = 2000; // [ms]
 const kMeshes = ".stl,.obj,.ply,.off,.gltf,.glb,.dae,.fbx,.3ds,.3mf,.vtk";
+const kPainting = "Painting anchors: arrow keys move the brush, Space paints, Shift and Space erase, Escape ends it";
 type Panel = "place" | "filling" | "scene";
 
 /** What the room works with, made when its canvas is there. */
@@ -58,6 +60,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
       hand.onPreview = (values) => made.doc?.preview(values);
       hand.onCommit = () => made.doc?.commit();
     }
+    brush.newest = () => made.items;
     gizmos.newest = (key) => made.items.find((item) => item.key === key);
     made.onChange = () => setVersion((v) => v + 1);
     setDesk({ viewer, scene: made, gizmos, brush });
@@ -103,7 +106,11 @@ export function Author({ connection, listing, onTry, onChanged }: {
     setImported(null), setDropped(null), setSelected(""), setBrushRadius(null), setError(null);
     void scene?.open(path);
   };
-  const save = () => doc?.save().then(() => setError(null), setError);
+  const save = () => doc?.save().then(() => setError(null), (failure: Error) => {
+    setError(failure);
+    doc.lookOnDisk().catch(() => {});
+  });
+  const settle = (how: Promise<void>) => void how.then(() => setError(null), setError);
   const remove = (gone: Item) => {
     doc?.set([[gone.path, undefined]]);
     select("");
@@ -126,13 +133,17 @@ export function Author({ connection, listing, onTry, onChanged }: {
     addEventListener("keydown", press);
     return () => removeEventListener("keydown", press);
   });
-  // A file that somebody else wrote is noticed when the author comes back to the page.
+  // A file that somebody else wrote is noticed while the page is seen, and when its author comes back to it.
   useEffect(() => {
     const look = () => {
-      if (doc && document.visibilityState === "visible") doc.wasChangedOnDisk().then((was) => was && setError(new Error(`${doc.path} was changed on the disk. "Read again" shows it; undo brings your text back.`)), () => {});
+      if (doc && document.visibilityState === "visible") doc.lookOnDisk().catch(() => {}); // a program that has ended is told of elsewhere
     };
+    const timer = setInterval(look, kLookOnDisk);
     addEventListener("focus", look);
-    return () => removeEventListener("focus", look);
+    return () => {
+      clearInterval(timer);
+      removeEventListener("focus", look);
+    };
   }, [doc]);
 
   const take = (file: File | undefined) => {
@@ -166,7 +177,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
         )}
       </nav>
       <div class="view">
-        <canvas ref={canvas} tabIndex={0} aria-label={scene?.shown ? `The scene ${scene.shown.view.name} at rest; A, D, W, S, + and - turn the view` : "No scene"} />
+        <canvas ref={canvas} tabIndex={0} aria-label={brushRadius !== null ? kPainting : scene?.shown ? `The scene ${scene.shown.view.name} at rest; A, D, W, S, + and - turn the view` : "No scene"} />
         <div class="handles" ref={overlay} />
         {desk && doc && <ViewBar desk={desk} modes={modes} mode={used} onMode={setMode} onVersion={() => setVersion((v) => v + 1)} />}
         {!doc && !scene?.isLoading && (
@@ -174,13 +185,13 @@ export function Author({ connection, listing, onTry, onChanged }: {
             <p>STL, OBJ, PLY and others. It is checked, repaired and filled with spheres, and becomes a scene that runs. Or choose a scene.</p>
           </Empty>
         )}
-        {scene?.isLoading && !scene.shown && <Empty title={`Loading ${path}`}><p>Its organs are read and filled with spheres.</p></Empty>}
-        {scene?.isLoading && scene.shown && <p class="busy" role="status">filling …</p>}
+        {scene?.isLoading && !scene.shown && <Empty title={`Loading ${path}`}><p>Its organs are read and filled with spheres{scene.filled === null ? "" : `: ${Math.round(100 * scene.filled)} %`}.</p></Empty>}
+        {scene?.isLoading && scene.shown && <p class="busy" role="status">{scene.fillingText}</p>}
         {scene?.error && !doc && <Problems error={scene.error} />}
       </div>
       <div class="time">
         {desk && scene && doc && <Toolbar scene={scene} onSave={() => void save()}
-          onReread={() => void doc.reread().then(() => setError(null), setError)} onTry={() => onTry(path, doc.text)} error={error} />}
+          onLoad={() => settle(doc.reread())} onKeep={() => settle(doc.keep())} onTry={() => onTry(path, doc.text)} error={error} />}
       </div>
       <aside class="side">
         {dropped ? (
@@ -239,7 +250,14 @@ function ViewBar({ desk, modes, mode, onMode, onVersion }: { desk: Desk; modes: 
 }
 
 /** What is done with the whole scene. */
-function Toolbar({ scene, onSave, onReread, onTry, error }: { scene: AuthorScene; onSave: () => void; onReread: () => void; onTry: () => void; error: Error | null }) {
+function Toolbar({ scene, onSave, onLoad, onKeep, onTry, error }: {
+  scene: AuthorScene;
+  onSave: () => void;
+  onLoad: () => void;
+  onKeep: () => void;
+  onTry: () => void;
+  error: Error | null;
+}) {
   const doc = scene.doc!;
   const { errors, warnings } = scene.problems;
   const tools = scene.shown?.view.tools.length ?? 0;
@@ -250,15 +268,23 @@ function Toolbar({ scene, onSave, onReread, onTry, error }: { scene: AuthorScene
           <button type="button" disabled={!doc.canUndo} title="Ctrl+Z" onClick={() => doc.undo()}>Undo</button>
           <button type="button" disabled={!doc.canRedo} title="Ctrl+Shift+Z" onClick={() => doc.redo()}>Redo</button>
         </div>
-        <span class={`verdict ${errors.length ? "bad" : "good"}`} role="status">
-          {errors.length ? `${errors.length} error${errors.length > 1 ? "s" : ""}` : warnings.length ? `good, ${warnings.length} warning${warnings.length > 1 ? "s" : ""}` : "good"}
+        <span class={`verdict ${errors.length ? "bad" : "good"}`} role="status" title="What `ctpm check` says of the text as it is now; its lines are below the text">
+          {errors.length ? counted(errors.length, "error") : warnings.length ? `no error, ${counted(warnings.length, "warning")}` : "no errors"}{doc.isChanged ? ", not saved" : ", saved"}
         </span>
         <div class="buttons">
           <button type="button" disabled={!doc.isChanged} title="Ctrl+S" onClick={onSave}>Save</button>
           <button type="button" class="main" disabled={tools === 0 || errors.length > 0} title={tools === 0 ? "The scene has no tool yet" : "Nothing is recorded"} onClick={onTry}>Try it</button>
         </div>
       </div>
-      {error && <div class="conflict"><Problems error={error} /><button type="button" onClick={onReread}>Read again</button></div>}
+      {doc.onDisk === "same" ? error && <div class="conflict"><Problems error={error} /></div> : (
+        <div class="conflict" role="alert">
+          <p>{doc.onDisk === "gone" ? `${doc.path} is no longer there.` : `${doc.path} was changed on the disk since it was read here.`}</p>
+          <div class="buttons">
+            {doc.onDisk === "changed" && <button type="button" title="Undo brings your text back" onClick={onLoad}>Load it</button>}
+            <button type="button" title="Saving then writes your text over it" onClick={onKeep}>Keep mine</button>
+          </div>
+        </div>
+      )}
     </>
   );
 }

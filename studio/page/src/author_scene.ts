@@ -21,6 +21,7 @@ export interface Finding {
 export interface ShownOrgan {
   spheres: number;
   anchored: number;
+  shape_error: string; // in the command's words; empty: a rig
   report: string;
   findings: Finding[];
 }
@@ -65,6 +66,8 @@ export class AuthorScene {
   how: Shown = "surface";
   error: Error | null = null; // why the text cannot be loaded
   isLoading = false;
+  filled: number | null = null; // share of the organs' meshes that are filled; null: not told yet
+  measured: { done: number; most: number } | null = null; // ticks so far while the time of a tick is measured
   tickTime: TickTime | null = null; // of what is shown; null: not measured yet
   private checked: Checked | null = null;
   private schema: Schema | null = null;
@@ -116,6 +119,15 @@ export class AuthorScene {
 
   get items(): Item[] {
     return itemsOf(this.doc?.lastValue, this.shown?.view ?? null, this.middles);
+  }
+
+  /** What is done while the organs are filled, with its number once that is known. */
+  get fillingText(): string {
+    return this.filled === null ? "filling" : `filling ${Math.round(100 * this.filled)} %`;
+  }
+  /** The same while the time of a tick is measured: in ticks, of which it may need fewer. */
+  get measuringText(): string {
+    return this.measured ? `measuring, ${this.measured.done} of at most ${this.measured.most} ticks` : "measuring";
   }
 
   /** Errors and warnings of the text, as they are known now. */
@@ -182,11 +194,15 @@ export class AuthorScene {
     const stop = (this.running = new AbortController());
     const part = simulatedPart(doc.value);
     const poses = organPoses(doc.value);
-    this.isLoading = true, this.received = [];
+    this.isLoading = true, this.received = [], this.filled = null;
     this.onChange();
+    const progress = (done: number, total: number) => {
+      this.filled = done / total;
+      this.onChange();
+    };
     try {
       const frame = new Promise<void>((resolve) => (this.onFrame = resolve));
-      const shown = await this.connection.call<ShownScene>("scene.show", { path: doc.path, text: doc.text, stage: kAuthorStage }, { signal: stop.signal });
+      const shown = await this.connection.call<ShownScene>("scene.show", { path: doc.path, text: doc.text, stage: kAuthorStage }, { signal: stop.signal, progress });
       await frame;
       if (this.doc === doc) this.take(shown, part, poses);
     } catch (failure) {
@@ -221,10 +237,15 @@ export class AuthorScene {
   }
 
   private async measure(): Promise<void> {
-    this.tickTime = null;
+    this.tickTime = this.measured = null;
     const stop = (this.measuring = new AbortController());
+    const progress = (done: number, most: number) => {
+      if (this.measuring !== stop) return;
+      this.measured = { done, most };
+      this.onChange();
+    };
     try {
-      const time = await this.connection.call<TickTime>("scene.measure", { stage: kAuthorStage }, { signal: stop.signal });
+      const time = await this.connection.call<TickTime>("scene.measure", { stage: kAuthorStage }, { signal: stop.signal, progress });
       if (this.measuring === stop && !stop.signal.aborted) this.tickTime = time;
     } catch {
       // It was stopped because the scene changed.

@@ -7,16 +7,22 @@ import type { StageScene } from "./stage_scene";
 import type { Viewer } from "./viewer";
 
 const kApart = 0.6; // distance of two balls of a stroke, in radii
+const kKeyStep = 8; // of an arrow key [px]
+const kKeyWays: { [key: string]: [number, number] } = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
+type Hit = NonNullable<ReturnType<StageScene["meet"]>>;
 
 export class Brush {
   radius = 0.01; // [m]
   onPreview: (values: Values) => void = () => {};
   onCommit: () => void = () => {};
+  newest: () => Item[] = () => this.items; // as the text has them now, drawn or not
   private stage: StageScene | null = null;
   private items: Item[] = []; // of the scene as it was before the stroke
   private stroke: { organ: number; place: three.Vector3 }[] = [];
   private erased = new Set<string>();
   private isDown = false;
+  private pointer: { x: number; y: number } | null = null; // of the mouse or the keys, in the window [px]
   private readonly cursor: three.Mesh;
 
   constructor(private readonly viewer: Viewer) {
@@ -35,6 +41,7 @@ export class Brush {
     if ((stage === null) !== (this.stage === null)) this.listen(stage !== null);
     this.stage = stage;
     this.cursor.visible = false;
+    this.pointer = null;
     this.viewer.draw();
   }
 
@@ -44,15 +51,23 @@ export class Brush {
     this.viewer.canvas[change]("pointerdown", this.down as EventListener);
     this.viewer.canvas[change]("pointermove", this.move as EventListener);
     this.viewer.canvas[change]("pointerup", this.up as EventListener);
+    this.viewer.canvas[change]("keydown", this.key as EventListener);
+    if (on) this.viewer.canvas.focus();
   }
 
   private readonly down = (event: PointerEvent): void => {
     if (event.button !== 0) return;
     this.viewer.canvas.setPointerCapture(event.pointerId);
+    this.begin();
     this.isDown = true;
-    this.stroke = [], this.erased.clear();
     this.move(event);
   };
+
+  /** Begins a stroke: keys may come faster than pictures. */
+  private begin(): void {
+    this.items = this.newest();
+    this.stroke = [], this.erased.clear();
+  }
 
   private readonly up = (): void => {
     if (!this.isDown) return;
@@ -61,14 +76,49 @@ export class Brush {
   };
 
   private readonly move = (event: PointerEvent): void => {
-    const hit = this.stage?.meet(this.viewer.rayAt(event.clientX, event.clientY)) ?? null;
-    this.cursor.visible = hit !== null;
-    if (hit) this.cursor.position.copy(hit.place), this.cursor.scale.setScalar(this.radius);
-    this.viewer.draw();
+    this.pointer = { x: event.clientX, y: event.clientY };
+    const hit = this.point();
     if (!hit || !this.isDown) return;
     if (event.shiftKey) this.erase(hit.place);
     else this.paint(hit.organ, hit.place);
   };
+
+  /** Shows the brush where the pointer meets the surface. Returns the place; null: it meets none. */
+  private point(): Hit | null {
+    const hit = (this.pointer && this.stage?.meet(this.viewer.rayAt(this.pointer.x, this.pointer.y))) ?? null;
+    this.cursor.visible = hit !== null;
+    if (hit) this.cursor.position.copy(hit.place), this.cursor.scale.setScalar(this.radius);
+    this.viewer.draw();
+    return hit;
+  }
+
+  /** Keys do what the mouse does: arrows move the brush, Space is a stroke where it is. */
+  private readonly key = (event: KeyboardEvent): void => {
+    const way = kKeyWays[event.key];
+    if ((!way && event.key !== " ") || event.ctrlKey || event.altKey || event.metaKey) return;
+    event.preventDefault();
+    if (!this.point()) this.pointer = this.middle();
+    else if (way) {
+      const before = this.pointer!;
+      this.pointer = { x: before.x + kKeyStep * way[0], y: before.y + kKeyStep * way[1] };
+      if (!this.point()) this.pointer = before; // the brush stays on the surface
+    }
+    const hit = this.point();
+    if (!hit || way) return;
+    this.begin();
+    if (event.shiftKey) this.erase(hit.place);
+    else this.paint(hit.organ, hit.place);
+    if (this.stroke.length > 0 || this.erased.size > 0) this.onCommit();
+  };
+
+  /** Where the first organ's middle is seen, where the brush begins. */
+  private middle(): { x: number; y: number } | null {
+    const organ = this.stage?.view.organs[0];
+    if (!organ) return null;
+    const box = this.viewer.canvas.getBoundingClientRect();
+    const at = this.viewer.pixelOf(new three.Vector3(...organ.least).add(new three.Vector3(...organ.most)).multiplyScalar(0.5));
+    return at && { x: box.left + at.x, y: box.top + at.y };
+  }
 
   private paint(organ: number, place: three.Vector3): void {
     if (this.stroke.some((ball) => ball.organ === organ && ball.place.distanceTo(place) < kApart * this.radius)) return;

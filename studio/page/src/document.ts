@@ -6,8 +6,13 @@ import { findNodeAtLocation, getLocation, type JSONPath, parseTree } from "jsonc
 import type { Connection } from "./connection";
 import { applied, type Change, type Json, parseJson, removeValue, setValue } from "./json_edit";
 import { editorOf, gesture, rangeOf, underlined } from "./json_editor";
-import type { Problem } from "./protocol";
+import { CallFailed, type Problem } from "./protocol";
 import type { Schema } from "./scene_schema";
+
+const kOneStep = 500; // changes of the same values that follow each other within it are one step [ms]
+
+/** What became of the file since it was read, by somebody else's hand. */
+export type OnDisk = "same" | "changed" | "gone";
 
 export class SceneDocument {
   readonly host = document.createElement("div"); // of the editor, for whoever shows it
@@ -16,6 +21,8 @@ export class SceneDocument {
   onPlace: (path: JSONPath) => void = () => {}; // the cursor was put there by hand
   private before: string | null = null; // a change that goes on began with this
   private gestures = 0; // begun so far
+  private last: { what: string; text: string; at: number } | null = null; // the change that preview() made last
+  onDisk: OnDisk = "same";
   private valid: Json | undefined;
   private parsed: { text: string; value: Json | undefined } | null = null;
 
@@ -70,9 +77,11 @@ export class SceneDocument {
   }
   undo(): void {
     this.commit();
+    this.last = null;
     undo(this.view);
   }
   redo(): void {
+    this.last = null;
     redo(this.view);
   }
 
@@ -80,14 +89,22 @@ export class SceneDocument {
   set(values: [JSONPath, Json | undefined][]): void {
     if (this.value === undefined) return; // what is no JSON is not changed but by hand
     this.commit();
+    this.last = null;
     this.setText(changed(this.text, values));
   }
 
-  /** As set(), for a change that goes on: each call begins with the text before the first; all until commit() are one step. */
+  /** As set(), for a change that goes on: each call begins with the text before the first; all until commit() are one step,
+      and so is what follows within half a second and changes the same values. */
   preview(values: [JSONPath, Json | undefined][]): void {
     if (this.value === undefined) return;
-    if (this.before === null) this.before = this.text, ++this.gestures;
+    const what = JSON.stringify(values.map(([path, value]) => [path, value === undefined]));
+    if (this.before === null) {
+      this.before = this.text;
+      const { last } = this, goesOn = last?.what === what && last.text === this.text && performance.now() - last.at < kOneStep;
+      if (!goesOn) ++this.gestures;
+    }
     this.setText(changed(this.before, values), this.gestures);
+    this.last = { what, text: this.text, at: performance.now() };
   }
   commit(): void {
     this.before = null;
@@ -99,7 +116,7 @@ export class SceneDocument {
     const { text } = this;
     if (text === this.saved) return;
     this.revision = (await this.connection.call<{ revision: string }>("scene.write", { path: this.path, text, revision: this.revision })).revision;
-    this.saved = text;
+    this.saved = text, this.onDisk = "same";
     this.keepDraft();
     this.onChange();
   }
@@ -107,15 +124,36 @@ export class SceneDocument {
   /** Goes back to what the file says now; undo brings the changes back. */
   async reread(): Promise<void> {
     const file = await this.connection.call<{ text: string; revision: string }>("scene.read", { path: this.path });
-    this.saved = file.text, this.revision = file.revision, this.before = null;
+    this.saved = file.text, this.revision = file.revision, this.before = this.last = null, this.onDisk = "same";
     this.setText(file.text);
     this.keepDraft();
     this.onChange();
   }
 
-  /** Whether the file is another one than was read, and was not written here. */
-  async wasChangedOnDisk(): Promise<boolean> {
-    return (await this.connection.call<{ revision: string }>("scene.read", { path: this.path })).revision !== this.revision;
+  /** Stays with this text though the file is another one by now: the next save writes over that. */
+  async keep(): Promise<void> {
+    const file = await this.readFile();
+    this.saved = file?.text ?? "", this.revision = file?.revision ?? kNoFile, this.onDisk = "same";
+    this.keepDraft();
+    this.onChange();
+  }
+
+  /** Looks whether the file is another one than was read or written here, or gone. */
+  async lookOnDisk(): Promise<void> {
+    const { revision, onDisk } = this, file = await this.readFile();
+    if (revision !== this.revision) return; // it was saved or read meanwhile
+    this.onDisk = (file?.revision ?? kNoFile) === revision ? "same" : file ? "changed" : "gone";
+    if (this.onDisk !== onDisk) this.onChange();
+  }
+
+  /** The file as it is now; null: there is none. */
+  private async readFile(): Promise<{ text: string; revision: string } | null> {
+    try {
+      return await this.connection.call<{ text: string; revision: string }>("scene.read", { path: this.path });
+    } catch (failure) {
+      if (failure instanceof CallFailed) return null;
+      throw failure;
+    }
   }
 
   underline(errors: Problem[], warnings: Problem[]): void {
@@ -159,6 +197,8 @@ export class SceneDocument {
     else localStorage.setItem(draftKey(this.path), text);
   }
 }
+
+const kNoFile = "none"; // revision of a file that is not there
 
 function draftKey(path: string): string {
   return `ctpm.draft:${path}`;

@@ -62,6 +62,7 @@ function OrganFilling({ scene, organ, name }: { scene: AuthorScene; organ: numbe
         <input type="range" min={0} max={steps} step={1} value={toStep(radius)} aria-valuetext={`${radius} mm`} onInput={(e) => set(e.currentTarget.valueAsNumber)} onChange={() => doc.commit()} />
       </label>
       {shown && <Readings rows={[["spheres", String(shown.spheres)], ["never move", String(shown.anchored)]]} />}
+      {shown?.shape_error && <p class="hint">Shape error, <span class="shape" role="status">{shown.shape_error}</span>. Tools touch the mesh's own surface, which the spheres carry.</p>}
       <ul class="layers" aria-label="Spheres by layer">
         {[...layers].sort(([a], [b]) => a - b).map(([layer, count]) => (
           <li key={layer}><i style={{ background: cssOf(view?.organs[organ]?.layer_colours[layer - 1]) }} />layer {layer}<span class="number">{count}</span></li>
@@ -87,8 +88,8 @@ function Cost({ scene }: { scene: AuthorScene }) {
   return (
     <Section title="What it costs">
       <Readings rows={[
-        ["elements", isLoading ? "filling …" : String(shown?.elements ?? "–")],
-        ["time per tick", time ? `${(1e3 * time.measured_tick_time_s).toFixed(2)} ms` : isLoading ? "filling …" : "measuring …"],
+        ["elements", isLoading ? scene.fillingText : String(shown?.elements ?? "–")],
+        ["time per tick", time ? `${(1e3 * time.measured_tick_time_s).toFixed(2)} ms` : isLoading ? scene.fillingText : scene.measuringText],
         ["of a tick", time ? `${(100 * share).toFixed(0)} % of ${(1e3 * time.tick_s).toFixed(0)} ms` : "–"],
       ]} />
       {time && <p class={share > 0.7 ? "warning" : "hint"} role="status">{share > 1 ? "Slower than real time on this machine." : share > 0.7 ? "Little is left for contact and cuts." : `Measured here and now at rest, median of ${time.ticks} ticks.`}</p>}

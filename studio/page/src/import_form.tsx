@@ -13,6 +13,7 @@ import { seesBox } from "./viewer";
 interface Preset {
   name: string;
   organ: string;
+  source: string;
 }
 
 export interface Imported {
@@ -127,6 +128,7 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
     return () => stop.current.abort();
   }, [connection, file]);
 
+  const tissue = presets.find((preset) => preset.name === organ);
   const target = isAdded ? folder + scene : scene, refused = holesOf(error);
   const start = async (closed = hole) => {
     setError(null), setHole(closed);
@@ -163,8 +165,9 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
         </fieldset>
       )}
       <label class="field"><span>tissue</span>
-        <select value={organ} onChange={(e) => setOrgan(e.currentTarget.value)}>{presets.map((p) => <option key={p.name}>{p.name}</option>)}</select>
+        <select value={organ} aria-describedby="tissue-source" onChange={(e) => setOrgan(e.currentTarget.value)}>{presets.map((p) => <option key={p.name} title={p.source}>{p.name}</option>)}</select>
       </label>
+      <p class="hint source" id="tissue-source">How stiff, damped, heavy and tough it is.{tissue && ` Its values: ${tissue.source}.`}</p>
       <label class="field"><span>unit of the file</span>
         <select value={unit} onChange={(e) => setUnit(e.currentTarget.value)}>
           <option value="">guessed</option>

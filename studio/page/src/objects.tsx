@@ -94,7 +94,7 @@ export function Objects({ scene, viewer, items, selected, onSelect, brushRadius,
             </div>
           )}
           {kind === "anchor" && brushRadius !== null && (
-            <label class="field brush"><span>brush {mm(brushRadius)} mm; drag paints, Shift erases</span>
+            <label class="field brush"><span>brush {mm(brushRadius)} mm: drag, or arrows and Space; Shift erases</span>
               <input type="range" min={least} max={12 * least} step={0.0005} value={brushRadius} onInput={(e) => onBrush(e.currentTarget.valueAsNumber)} />
             </label>
           )}

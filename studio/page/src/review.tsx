@@ -11,7 +11,7 @@ import type { Place } from "./place";
 import { Player } from "./player";
 import type { ComparisonResult, Legend, Listing, Note, SessionEvent } from "./protocol";
 import { Mark, Timeline } from "./timeline";
-import { behind, bytes, command, millimetres, newtons, seconds } from "./text";
+import { behind, bytes, command, millimetres, newtons, seconds, tickRows } from "./text";
 import { kTurns, Viewer } from "./viewer";
 
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4];
@@ -328,7 +328,7 @@ function Moment({ connection, player, frame, other }: { connection: Connection; 
           ["network", `${info.spheres} spheres`],
           ["largest force", newtons(info.max_force_n)],
           ["largest depth", millimetres(info.max_depth_m, 2)],
-          ["tick p50, p99", `${(1e3 * info.tick_time_p50_s).toFixed(2)}, ${(1e3 * info.tick_time_p99_s).toFixed(2)} ms`],
+          ...tickRows(info.tick_time_p50_s, info.tick_time_p99_s, info.tick_s),
           ["late ticks", String(info.late_ticks)],
           ["behind the clock", behind(info.slip_s, info.slip_max_s)],
         ]} />

@@ -12,6 +12,11 @@ export function seconds(time: number, digits = 3): string {
   return `${time.toFixed(digits)} s`;
 }
 
+/** "1 error", "3 errors". */
+export function counted(count: number, noun: string): string {
+  return `${count} ${noun}${count === 1 ? "" : "s"}`;
+}
+
 /** How far a session fell behind real time. */
 export function behind(atEnd: number, atMost: number): string {
   return atMost > 0 ? `${seconds(atEnd)} at the end, ${seconds(atMost)} at most` : "never";
@@ -23,6 +28,15 @@ export function short(value: number | null | undefined, significant = 4): string
 
 export function bytes(count: number): string {
   return count < 1e6 ? `${(count / 1e3).toFixed(0)} kB` : `${(count / 1e6).toFixed(1)} MB`;
+}
+
+/** How long ticks took, and whether they hold their rate: what a session's p50 and p99 say. */
+export function tickRows(p50: number, p99: number, tick = 1e-3): [string, string][] {
+  const under = (time: number) => `under ${(1e3 * time).toFixed(2)} ms`;
+  return [
+    ["half of the ticks", under(p50)], ["99 of 100 ticks", under(p99)],
+    [`${Number((1e-3 / tick).toPrecision(3))} kHz`, p99 <= tick ? "holds" : `does not hold: a tick has ${1e3 * tick} ms`],
+  ];
 }
 
 /** A word of a shell command, quoted where the shell needs it. */

@@ -5,7 +5,7 @@ import { DeviceForm } from "./device";
 import { deviceParameters, deviceWords, storedDevice, storeDevice } from "./device_choice";
 import { Empty, HeldButton, Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { type ComparisonResult, type EndedTraining, type Listing, type Motion, problemText } from "./protocol";
-import { behind, command, millimetres, newtons, seconds } from "./text";
+import { behind, command, millimetres, newtons, seconds, tickRows } from "./text";
 import type { Place } from "./place";
 import { ForceSound } from "./sound";
 import { kGhostAhead, Trainer } from "./trainer";
@@ -412,7 +412,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
             ["severed", `${ended.severed} elements`],
             ["late ticks", String(ended.late_ticks)],
             ["behind the clock", behind(ended.slip_s ?? 0, ended.slip_max_s ?? 0)],
-            ["tick p50, p99", `${(1e3 * (ended.tick_time_p50_s ?? 0)).toFixed(2)}, ${(1e3 * (ended.tick_time_p99_s ?? 0)).toFixed(2)} ms`],
+            ...tickRows(ended.tick_time_p50_s ?? 0, ended.tick_time_p99_s ?? 0),
             ["hand to tick p50, p99", `${(1e3 * (ended.pose_wait_p50_s ?? 0)).toFixed(1)}, ${(1e3 * (ended.pose_wait_p99_s ?? 0)).toFixed(1)} ms`],
             ["within 5 ms", `${(1e2 * (ended.poses_within_5ms ?? 0)).toFixed(1)} %`],
           ]} />

@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
+import { authorOf } from "./author_page.mjs";
 import { largeMesh } from "./large_mesh.mjs";
 import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings, takeUp } from "./browser.mjs";
 
@@ -22,46 +23,23 @@ after(async () => {
 });
 
 const kScene = "my-kidney-scene.json";
-const onDisk = (scene = kScene) => readFileSync(join(folder, scene), "utf8");
-/** The text as its author has it: a draft until it is saved. */
-const text = async (scene = kScene) => (await page.evaluate((key) => localStorage.getItem(key), `ctpm.draft:${scene}`)) ?? onDisk(scene);
-const scene = async () => JSON.parse(await text());
-const button = (name, within = ".author") => page.locator(`${within} button:text-is("${name}")`);
-/** Waits until the scene is shown as its text says, and its errors are known. */
-async function settled() {
-  await page.waitForTimeout(400);
-  await page.waitForFunction(() => !document.querySelector(".busy") && !document.querySelector(".view .empty"));
-  await page.waitForTimeout(200);
-}
-async function write(content) {
-  await page.locator(".cm-content").click();
-  await page.keyboard.press("Control+a");
-  await page.evaluate((pasted) => navigator.clipboard.writeText(pasted), content);
-  await page.keyboard.press("Control+v");
-}
-const centreOf = async (locator) => {
-  const box = await locator.boundingBox();
-  return { x: box.x + box.width / 2, y: box.y + box.height / 2 };
-};
-const handle = (name) => page.locator(`.handle:has(span:text-is("${name}"))`);
-/** Drags with the mouse, as a hand does: in steps. */
-async function drag(from, by, steps = 12) {
-  await page.mouse.move(from.x, from.y);
-  await page.mouse.down();
-  for (let i = 1; i <= steps; ++i) await page.mouse.move(from.x + (by.x * i) / steps, from.y + (by.y * i) / steps);
-  await page.mouse.up();
-}
-async function save() {
-  await page.keyboard.press("Control+s");
-  await page.waitForFunction((key) => localStorage.getItem(key) === null, `ctpm.draft:${kScene}`);
-  const checked = ctpm(folder, "check", kScene);
-  assert.equal(checked.code, 0, checked.err);
-  return JSON.parse(onDisk());
-}
+const { onDisk, text, scene, button, handle, settled, write, centreOf, drag, untilSaved, save } = authorOf(() => page, () => folder, kScene);
 /** Distance of a place from the nearest vertex of the imported mesh [mm]. */
 function fromMesh(place) {
   const vertices = readFileSync(join(folder, "my-kidney-scene.obj"), "utf8").split("\n").filter((line) => line.startsWith("v "));
   return Math.min(...vertices.map((line) => Math.hypot(...line.split(/\s+/).slice(1, 4).map((x, i) => Number(x) - place[i]))));
+}
+
+/** Drops a file onto the page. Returns when. */
+async function drop(name, bytes) {
+  const dropped = await page.evaluateHandle(([text, name]) => {
+    const data = new DataTransfer();
+    data.items.add(new File([text], name));
+    return data;
+  }, [bytes.toString(), name]);
+  const at = Date.now();
+  await page.dispatchEvent(".view canvas", "drop", { dataTransfer: dropped });
+  return at;
 }
 
 test("an empty room says what to do", async () => {
@@ -71,8 +49,9 @@ test("an empty room says what to do", async () => {
 });
 
 test("a mesh of 100,000 triangles is imported, and an import that is stopped leaves nothing", async () => {
+  // It is dropped onto the page, uneven as a scanner's surface is.
   const started = Date.now();
-  await page.setInputFiles(".pick input", { name: "large.obj", mimeType: "model/obj", buffer: largeMesh(100000) });
+  await drop("large.obj", largeMesh(100000, 0.6));
   await page.locator("aside label:has-text('tissue') select").selectOption("liver");
   await button("Import", "aside").click();
   await page.waitForFunction(() => /importing [1-9]/.test(document.querySelector("aside .working")?.textContent ?? ""));
@@ -80,11 +59,15 @@ test("a mesh of 100,000 triangles is imported, and an import that is stopped lea
   await page.waitForSelector("aside .problems:has-text('Stopped')");
   console.log(`author: an import of 100,000 triangles was stopped ${Date.now() - started} ms after it was dropped`);
   assert.deepEqual(readdirSync(folder).filter((name) => name.startsWith("large")), ["large.obj"]);
-  const again = Date.now();
+  rmSync(join(folder, "large.obj"));
+  await button("Back", "aside").click();
+  const again = await drop("large.obj", largeMesh(100000, 0.6));
+  await page.locator("aside label:has-text('tissue') select").selectOption("liver");
   await button("Import", "aside").click();
   await page.waitForSelector("aside .good:has-text('large-scene.json')");
+  await page.waitForFunction(() => !document.querySelector(".busy") && !document.querySelector(".view .empty"));
+  console.log(`author: 100,000 triangles uploaded, imported, filled and drawn ${((Date.now() - again) / 1e3).toFixed(1)} s after they were dropped`);
   await settled();
-  console.log(`author: 100,000 triangles imported, filled and drawn in ${((Date.now() - again) / 1e3).toFixed(1)} s`);
   await picture(page, "author-large");
 });
 
@@ -92,13 +75,7 @@ test("a hole that is too wide is told, and closed when its author says so", asyn
   const lines = readFileSync(join(paths.source, "scenes", "organs", "kidney.obj"), "utf8").trimEnd().split("\n");
   const x = lines.filter((line) => line.startsWith("v ")).map((line) => Number(line.split(/\s+/)[1])), least = Math.min(...x), most = Math.max(...x);
   const mesh = Buffer.from(lines.filter((line) => !line.startsWith("f ") || x[Number.parseInt(line.split(/\s+/)[1]) - 1] < most - 0.15 * (most - least)).join("\n") + "\n");
-  // It is dropped onto the page.
-  const dropped = await page.evaluateHandle((text) => {
-    const data = new DataTransfer();
-    data.items.add(new File([text], "holed.obj"));
-    return data;
-  }, mesh.toString());
-  await page.dispatchEvent(".view canvas", "drop", { dataTransfer: dropped });
+  await drop("holed.obj", mesh);
   await page.locator("aside label:has-text('radius') input").fill("5");
   await button("Import", "aside").click();
   await page.waitForSelector("aside .problems:has-text('wider than')");
@@ -121,6 +98,12 @@ test("a mesh becomes a scene, as by the command, and what was repaired is listed
   await page.setInputFiles(".pick input", { name: "my-kidney.obj", mimeType: "model/obj", buffer: mesh });
   // The usual radius is what holds 1 kHz while it is measured.
   await page.locator("aside label:has-text('radius') input").fill("4");
+  // What a tissue is, in the program's words, follows the choice.
+  const about = () => page.locator("#tissue-source").textContent();
+  assert.match(await about(), /Bao & Wu/);
+  await page.locator("aside label:has-text('tissue') select").selectOption("lung");
+  assert.match(await about(), /Mariappan/);
+  await page.locator("aside label:has-text('tissue') select").selectOption("kidney");
   await picture(page, "author-import");
   const shown = await page.locator("aside .command code").innerText();
   // The command that it shows writes the same scene elsewhere, and reports the same repairs.
@@ -186,6 +169,23 @@ test("the schema completes keys and values", async () => {
   await page.keyboard.press("Enter");
   await page.keyboard.type(",");
   assert.deepEqual((await scene()).loads, []);
+  // Values: those that the schema lists, in place of the one that stands there.
+  const { integrator } = (await studio.call("scene.schema", {})).properties.solver.properties;
+  await page.locator(".cm-line:has-text('\"integrator\"')").click();
+  await page.keyboard.press("End");
+  const behind = /"integrator": "(\w+)(".*)$/m.exec(await text());
+  for (let i = 0; i < behind[2].length; ++i) await page.keyboard.press("ArrowLeft");
+  await page.keyboard.press("Control+Space");
+  await page.waitForSelector(".cm-tooltip-autocomplete li");
+  const offered = await page.locator(".cm-tooltip-autocomplete li .cm-completionLabel").allInnerTexts();
+  await picture(page, "author-completion-value");
+  assert.ok(offered.length > 0 && offered.every((value) => integrator.enum.includes(value)), `${offered}`);
+  for (let i = 0; i < behind[1].length; ++i) await page.keyboard.press("Backspace");
+  await page.keyboard.type("leap", { delay: 30 });
+  await page.waitForSelector(".cm-tooltip-autocomplete li:has-text('leapfrog')");
+  await page.waitForTimeout(100);
+  await page.keyboard.press("Enter");
+  assert.equal((await scene()).solver.integrator, "leapfrog");
   while (await button("Undo").isEnabled()) await button("Undo").click();
   assert.equal(await text(), good);
 });
@@ -194,17 +194,38 @@ test("saving is by key, and never over somebody else's change", async () => {
   const changed = onDisk().replace(/"name": "[^"]*"/, '"name": "mine"');
   await write(changed);
   await page.keyboard.press("Control+s");
-  await page.waitForFunction((key) => localStorage.getItem(key) === null, `ctpm.draft:${kScene}`);
+  await untilSaved();
   assert.equal(onDisk(), changed);
+  // Somebody else's change is noticed before anything is saved, while the page is only looked at.
   writeFileSync(join(folder, kScene), changed + "\n");
-  await write(changed.replace("mine", "again"));
-  await page.keyboard.press("Control+s");
-  await page.waitForSelector(".conflict .problems");
-  assert.match(await page.locator(".conflict .problems").innerText(), /changed on the disk/);
-  assert.equal(onDisk(), changed + "\n");
-  await button("Read again").click();
+  await page.waitForSelector(".conflict:has-text('was changed on the disk')");
+  await picture(page, "author-changed-on-disk");
+  await button("Load it").click();
   await page.waitForSelector(".conflict", { state: "detached" });
   assert.equal(await text(), changed + "\n");
+  await page.keyboard.press("Control+z");
+  assert.equal(await text(), changed, "undo brings the author's own text back");
+  // Who saves before it was noticed is refused, and may keep what is here.
+  const mine = changed.replace("mine", "again");
+  await write(mine);
+  writeFileSync(join(folder, kScene), changed + "\n\n");
+  await page.keyboard.press("Control+s");
+  await page.waitForSelector(".conflict:has-text('was changed on the disk')");
+  assert.equal(onDisk(), changed + "\n\n");
+  await button("Keep mine").click();
+  await page.waitForSelector(".conflict", { state: "detached" });
+  assert.equal(onDisk(), changed + "\n\n");
+  assert.equal(await text(), mine);
+  await save();
+  assert.equal(onDisk(), mine);
+  // A file that is gone is written again when its author wants that.
+  rmSync(join(folder, kScene));
+  await page.waitForSelector(".conflict:has-text('no longer there')");
+  await button("Keep mine").click();
+  await page.waitForSelector(".conflict", { state: "detached" });
+  await page.keyboard.press("Control+s");
+  await untilSaved();
+  assert.equal(onDisk(), mine);
   await settled();
 });
 
@@ -231,19 +252,6 @@ test("a probe is dragged over the surface", async () => {
   assert.deepEqual(await outOfReach(page), []);
 });
 
-test("200 nudges make 200 undo steps, and undoing all gives the text back", async () => {
-  const before = await text(), place = async () => (await scene()).probes[0].at_mm, from = await place();
-  const way = async () => Math.hypot(...(await place()).map((x, i) => x - from[i]));
-  await handle("probe").focus();
-  for (let i = 0; i < 200; ++i) await page.keyboard.press("ArrowLeft"); // out of the picture
-  await picture(page, "author-beyond");
-  assert.ok(Math.abs((await way()) - 200) < 2, `${await way()} mm`);
-  for (let i = 0; i < 199; ++i) await page.keyboard.press("Control+z");
-  assert.ok(Math.abs((await way()) - 1) < 0.02, `${await way()} mm`);
-  await page.keyboard.press("Control+z");
-  assert.equal(await text(), before);
-});
-
 test("a tool stands where it was dragged to, and is taken up there", async () => {
   await page.click(".objects button:has-text('scalpel')");
   await drag(await centreOf(handle("scalpel")), { x: 10, y: 130 });
@@ -253,7 +261,18 @@ test("a tool stands where it was dragged to, and is taken up there", async () =>
   await settled();
   await picture(page, "author-tool");
   await button("turn").click();
+  const before = (await scene()).tools.find((tool) => tool.name === "scalpel"), middle = await centreOf(handle("scalpel"));
+  await drag({ x: middle.x + 18, y: middle.y - 14 }, { x: 50, y: 30 });
+  const turned = (await scene()).tools.find((tool) => tool.name === "scalpel");
   await picture(page, "author-turn");
+  assert.deepEqual(turned.at_mm, before.at_mm);
+  const angle = (Math.acos(before.pointing.reduce((sum, x, i) => sum + x * turned.pointing[i], 0)) * 180) / Math.PI;
+  const facing = (Math.acos(before.facing.reduce((sum, x, i) => sum + x * turned.facing[i], 0)) * 180) / Math.PI;
+  assert.ok(Math.max(angle, facing) > 5, `turned by ${angle} and ${facing} degrees`);
+  assert.ok(Math.abs(turned.pointing.reduce((sum, x, i) => sum + x * turned.facing[i], 0)) < 1e-3, "pointing and facing stay square");
+  await page.keyboard.press("Control+z");
+  assert.deepEqual((await scene()).tools.find((tool) => tool.name === "scalpel"), before);
+  await settled();
   await button("Try it").click();
   await page.waitForSelector(".view.running .force-bar");
   assert.equal(await page.locator(".recorded").textContent(), "not recorded");
@@ -286,12 +305,20 @@ test("a box anchor gets another size by its cubes", async () => {
   await settled();
   const before = (await scene()).organs[0].anchors.at(-1).box;
   await button("size").click();
+  // Its cube to the right is dragged with the mouse: the box grows along x alone, about its middle.
+  const middle = await centreOf(handle(await page.locator(".handle[aria-pressed=true] span").textContent()));
+  await drag({ x: middle.x + 45, y: middle.y }, { x: 25, y: 0 });
+  const wide = (await scene()).organs[0].anchors.at(-1).box;
   await picture(page, "author-box");
+  const sizeOf = (box) => box.max_mm.map((most, i) => most - box.min_mm[i]), [was, is] = [sizeOf(before), sizeOf(wide)];
+  assert.ok(is[0] > 1.2 * was[0], `${was} and ${is}`);
+  assert.ok(Math.abs(is[1] - was[1]) < 0.02 && Math.abs(is[2] - was[2]) < 0.02, `${was} and ${is}`);
+  for (let i = 0; i < 3; ++i) assert.ok(Math.abs(wide.max_mm[i] + wide.min_mm[i] - before.max_mm[i] - before.min_mm[i]) < 0.05);
   await page.locator("#panel .vector").nth(1).locator("input").first().fill("60");
   await page.keyboard.press("Tab");
   const after = (await scene()).organs[0].anchors.at(-1).box;
   assert.equal(after.max_mm[0], 60);
-  assert.deepEqual(after.min_mm, before.min_mm);
+  assert.deepEqual(after.min_mm, wide.min_mm);
   await page.locator(".remove").click();
   assert.equal((await save()).organs[0].anchors.some((anchor) => anchor.box), false);
 });
@@ -306,6 +333,11 @@ test("a camera is the view that was orbited to", async () => {
   assert.notDeepEqual(made.eye_mm, cameras[0].eye_mm);
   await drag({ x: view.x + 0.9 * view.width, y: view.y + 0.8 * view.height }, { x: 120, y: 0 }, 10);
   await page.waitForTimeout(200);
+  // Its own handle moves its eye, and what it looks at stays.
+  await drag(await centreOf(handle("camera")), { x: -24, y: -18 });
+  const dragged = (await scene()).cameras.at(-1);
+  assert.ok(Math.hypot(...dragged.eye_mm.map((x, i) => x - made.eye_mm[i])) > 5, `${made.eye_mm} to ${dragged.eye_mm}`);
+  assert.deepEqual({ ...dragged, eye_mm: 0 }, { ...made, eye_mm: 0 });
   await picture(page, "author-camera");
   const turned = await scene();
   await page.locator(".view canvas").focus();
@@ -336,7 +368,7 @@ test("comments stay where they are when things are dragged, added and removed", 
   assert.match(now, /"probe-2"/);
   assert.doesNotMatch(now, /"name": "camera"/);
   await page.keyboard.press("Control+s");
-  await page.waitForFunction((key) => localStorage.getItem(key) === null, `ctpm.draft:${kScene}`);
+  await untilSaved();
   const checked = ctpm(folder, "check", kScene);
   assert.equal(checked.code, 0, checked.err);
   await write(before);
@@ -361,6 +393,9 @@ test("the slider fills again: spheres, time per tick, scatter", async () => {
   await save();
   assert.equal(Number(/(\d+) spheres/.exec(ctpm(folder, "check", kScene).out)[1]), spheres);
   console.log(`author: ${spheres} spheres, ${time} ms a tick at rest`);
+  const shape = await page.locator("#panel .shape").first().textContent(), plan = ctpm(folder, "plan", kScene, "--quick").out;
+  assert.match(shape, /95 % within [\d.]+ mm, all within [\d.]+ mm/);
+  assert.ok(plan.includes(`shape of kidney, ${shape}\n`), `${shape}\n---\n${plan}`);
   const started = Date.now();
   const command = ctpmBeside(folder, "fidelity", kScene, "-o", "fidelity", "--quick");
   await button("Measure, short form", "#panel").click();
@@ -492,7 +527,7 @@ test("nothing is lost when the program is killed while a scene is edited", async
   assert.notEqual(await text(), changed);
   await page.keyboard.press("Control+Shift+z");
   await page.keyboard.press("Control+s");
-  await page.waitForFunction((key) => localStorage.getItem(key) === null, `ctpm.draft:${kScene}`);
+  await untilSaved();
   assert.equal(onDisk(), changed);
   studio.complaints.splice(complaints); // that nothing answered
 });

@@ -1,12 +1,16 @@
 // A scene that a client of the protocol works on.
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <fstream>
+#include <set>
 
+#include "importers/text.h"
 #include "tests/studio/server/serving.h"
 
 namespace ctpm {
@@ -99,8 +103,13 @@ TEST_F(AuthorTest, ErrorsOfATextAreThoseOfCheck) {
   ASSERT_TRUE(answer.contains("errors")) << answer;
   std::ofstream(folder_.path() / "other.json") << text_.dump(1);
   const auto printed = testing::run_ctpm({"check", "other.json"}, folder_.path());
-  for (const auto& error : answer["errors"])
+  for (const auto& error : answer["errors"]) {
+    // The same place in the text, under the name of the other file.
+    const std::string where = error["where"], place = where.substr(where.find(':'));
+    EXPECT_NE(place, where) << answer;
+    EXPECT_NE(printed.err.find("other.json" + place + ": error: "), std::string::npos) << printed.err << answer;
     EXPECT_NE(printed.err.find(error["message"].get<std::string>()), std::string::npos) << printed.err;
+  }
 }
 
 TEST_F(AuthorTest, ATickOfWhatIsShownIsMeasured) {
@@ -112,6 +121,120 @@ TEST_F(AuthorTest, ATickOfWhatIsShownIsMeasured) {
   ASSERT_TRUE(measured.contains("result")) << measured;
   EXPECT_GT(measured["result"]["measured_tick_time_s"].get<double>(), 0);
   EXPECT_EQ(measured["result"]["tick_s"], 1e-3);
+}
+
+TEST_F(AuthorTest, TheShapeErrorOfAFillingIsThatOfPlan) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  std::vector<std::string> told;
+  for (const double radius : {4, 2}) {
+    text_["organs"][0]["fill"] = {{"radius_mm", radius}, {"gap_mm", radius}};
+    const auto shown = client.call("scene.show", {{"path", "kidney.json"}, {"stage", kStage}, {"text", text_.dump()}});
+    ASSERT_TRUE(shown.contains("result")) << shown;
+    told.push_back(shown["result"]["organs"][0]["shape_error"]);
+    std::ofstream(folder_.path() / "kidney.json") << text_.dump();
+    const auto plan = testing::run_ctpm({"plan", "kidney.json", "--quick"}, folder_.path());
+    EXPECT_NE(plan.out.find("shape of kidney, " + told.back() + "\n"), std::string::npos) << plan.out << told.back();
+    const auto json = testing::run_ctpm({"plan", "kidney.json", "--quick", "--json"}, folder_.path());
+    const auto figures = nlohmann::json::parse(json.out)["shape_errors"][0];
+    EXPECT_EQ(figures["organ"], "kidney");
+    EXPECT_GT(figures["largest_mm"].get<double>(), figures["p95_mm"].get<double>());
+    EXPECT_NE(told.back().find("95 % within " + importers::mm_text(1e-3 * figures["p95_mm"].get<double>())),
+              std::string::npos);
+  }
+  EXPECT_NE(told[0], told[1]);
+}
+
+/// Calls, and returns what the call told of its progress: done and total.
+std::vector<std::pair<double, double>> progress_of(SocketClient& client, const std::string& call,
+                                                   const nlohmann::json& parameters) {
+  std::vector<std::pair<double, double>> told;
+  static int id = 1000;  // one of their own each
+  client.send({{"id", ++id}, {"call", call}, {"params", parameters}});
+  for (;;) {
+    const auto message = client.receive();
+    if (!message.is_text) continue;
+    const nlohmann::json answer = nlohmann::json::parse(message.bytes);
+    if (answer.value("id", 0) != id) continue;
+    if (!answer.contains("progress")) {
+      EXPECT_TRUE(answer.contains("result")) << answer;
+      return told;
+    }
+    told.emplace_back(answer["progress"]["done"], answer["progress"]["total"]);
+  }
+}
+
+TEST_F(AuthorTest, FillingAndMeasuringTellHowFarTheyAre) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  text_["organs"][0]["fill"] = {{"radius_mm", 1}, {"gap_mm", 1}};  // long enough to be told of
+  text_["organs"].push_back(text_["organs"][0]);
+  text_["organs"][1]["name"] = "other", text_["organs"][1]["at_mm"] = {100, 0, 0};
+  const auto filled =
+      progress_of(client, "scene.show", {{"path", "kidney.json"}, {"stage", kStage}, {"text", text_.dump()}});
+  ASSERT_GE(filled.size(), 2u);
+  for (std::size_t i = 0; i < filled.size(); ++i) {
+    EXPECT_LE(filled[i].first, filled[i].second);
+    if (i > 0) {
+      EXPECT_GE(filled[i].first, filled[i - 1].first) << "a share of all organs never falls";
+    }
+  }
+  EXPECT_GT(filled.back().first, 0);
+  const auto measured = progress_of(client, "scene.measure", {{"stage", kStage}});
+  ASSERT_GE(measured.size(), 2u);
+  for (std::size_t i = 1; i < measured.size(); ++i) {
+    EXPECT_GE(measured[i].first, measured[i - 1].first) << "ticks that are done";
+    EXPECT_LE(measured[i].second, measured[i - 1].second) << "it may need fewer than at most";
+  }
+  EXPECT_GT(measured.back().first, measured.front().first);
+  EXPECT_LT(measured.back().first, measured.back().second);
+}
+
+/// Files that this process writes may not be longer meanwhile [bytes]; a write beyond it is an error.
+class ShortFiles {
+ public:
+  explicit ShortFiles(rlim_t most) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit now = before_;
+    now.rlim_cur = most;
+    setrlimit(RLIMIT_FSIZE, &now);
+  }
+  ~ShortFiles() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  ShortFiles(const ShortFiles&) = delete;
+  ShortFiles& operator=(const ShortFiles&) = delete;
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+TEST_F(AuthorTest, AWriteThatFailsInTheMiddleLeavesTheSceneWhole) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const auto read = client.call("scene.read", {{"path", "kidney.json"}})["result"];
+  const std::string before = read["text"];
+  const std::string longer = before + std::string(200'000, ' ');
+  const auto files = [&] {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_.path())) names.insert(entry.path().filename());
+    return names;
+  };
+  const auto names = files();
+  nlohmann::json failed;
+  {
+    const ShortFiles limit(100'000);
+    failed = client.call("scene.write", {{"path", "kidney.json"}, {"text", longer}, {"revision", read["revision"]}});
+  }
+  ASSERT_TRUE(failed.contains("errors")) << failed;
+  EXPECT_NE(failed["errors"][0]["message"].get<std::string>().find("cannot be written"), std::string::npos) << failed;
+  EXPECT_EQ(client.call("scene.read", {{"path", "kidney.json"}})["result"], read);
+  EXPECT_EQ(files(), names) << "nothing half written is left beside it";
+  EXPECT_TRUE(client.call("scene.write", {{"path", "kidney.json"}, {"text", longer}, {"revision", read["revision"]}})
+                  .contains("result"));
+  EXPECT_EQ(client.call("scene.read", {{"path", "kidney.json"}})["result"]["text"], longer);
 }
 
 TEST_F(AuthorTest, TheScatterIsThatOfTheCommand) {

@@ -1,0 +1,49 @@
+// What an author's hands do in the page, for the tests of the Author room.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { ctpm } from "./browser.mjs";
+
+/** Tools for the scene `own` of a folder. `page` and `folder` are asked for when they are needed: both may change. */
+export function authorOf(page, folder, own) {
+  const onDisk = (scene = own) => readFileSync(join(folder(), scene), "utf8");
+  /** The text as its author has it: a draft until it is saved. */
+  const text = async (scene = own) => (await page().evaluate((key) => localStorage.getItem(key), `ctpm.draft:${scene}`)) ?? onDisk(scene);
+  const scene = async () => JSON.parse(await text());
+  const button = (name, within = ".author") => page().locator(`${within} button:text-is("${name}")`);
+  const handle = (name) => page().locator(`.handle:has(span:text-is("${name}"))`);
+  /** Waits until the scene is shown as its text says, and its errors are known. */
+  async function settled() {
+    await page().waitForTimeout(400);
+    await page().waitForFunction(() => !document.querySelector(".busy") && !document.querySelector(".view .empty"));
+    await page().waitForTimeout(200);
+  }
+  /** Puts a text into the editor, as pasted. */
+  async function write(content) {
+    await page().locator(".cm-content").click();
+    await page().keyboard.press("Control+a");
+    await page().evaluate((pasted) => navigator.clipboard.writeText(pasted), content);
+    await page().keyboard.press("Control+v");
+  }
+  const centreOf = async (locator) => {
+    const box = await locator.boundingBox();
+    return { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+  };
+  /** Drags with the mouse, as a hand does: in steps. */
+  async function drag(from, by, steps = 12) {
+    await page().mouse.move(from.x, from.y);
+    await page().mouse.down();
+    for (let i = 1; i <= steps; ++i) await page().mouse.move(from.x + (by.x * i) / steps, from.y + (by.y * i) / steps);
+    await page().mouse.up();
+  }
+  const untilSaved = () => page().waitForFunction((key) => localStorage.getItem(key) === null, `ctpm.draft:${own}`);
+  /** Saves by key; the program takes what was made. Returns the scene. */
+  async function save() {
+    await page().keyboard.press("Control+s");
+    await untilSaved();
+    const checked = ctpm(folder(), "check", own);
+    assert.equal(checked.code, 0, checked.err);
+    return JSON.parse(onDisk());
+  }
+  return { onDisk, text, scene, button, handle, settled, write, centreOf, drag, untilSaved, save };
+}
