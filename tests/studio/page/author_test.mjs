@@ -170,7 +170,9 @@ test("the schema completes keys and values", async () => {
   await page.keyboard.type(",");
   assert.deepEqual((await scene()).loads, []);
   // Values: those that the schema lists, in place of the one that stands there.
-  const { integrator } = (await studio.call("scene.schema", {})).properties.solver.properties;
+  const schema = await studio.call("scene.schema", {});
+  const { integrator } = schema.$defs[schema.properties.solver.$ref.split("/").at(-1)].properties;
+  await page.keyboard.press("Control+End"); // only lines near what is seen are there
   await page.locator(".cm-line:has-text('\"integrator\"')").click();
   await page.keyboard.press("End");
   const behind = /"integrator": "(\w+)(".*)$/m.exec(await text());
@@ -307,7 +309,7 @@ test("a box anchor gets another size by its cubes", async () => {
   await button("size").click();
   // Its cube to the right is dragged with the mouse: the box grows along x alone, about its middle.
   const middle = await centreOf(handle(await page.locator(".handle[aria-pressed=true] span").textContent()));
-  await drag({ x: middle.x + 45, y: middle.y }, { x: 25, y: 0 });
+  await drag({ x: middle.x + 64, y: middle.y + 2 }, { x: 30, y: 1 });
   const wide = (await scene()).organs[0].anchors.at(-1).box;
   await picture(page, "author-box");
   const sizeOf = (box) => box.max_mm.map((most, i) => most - box.min_mm[i]), [was, is] = [sizeOf(before), sizeOf(wide)];
@@ -332,6 +334,9 @@ test("a camera is the view that was orbited to", async () => {
   assert.equal(made.name, "camera");
   assert.notDeepEqual(made.eye_mm, cameras[0].eye_mm);
   await drag({ x: view.x + 0.9 * view.width, y: view.y + 0.8 * view.height }, { x: 120, y: 0 }, 10);
+  await page.waitForTimeout(200);
+  await page.locator(".view canvas").focus();
+  for (let i = 0; i < 8; ++i) await page.keyboard.press("-"); // until it is in the picture
   await page.waitForTimeout(200);
   // Its own handle moves its eye, and what it looks at stays.
   await drag(await centreOf(handle("camera")), { x: -24, y: -18 });

@@ -100,6 +100,11 @@ export async function openStudio(folder, port = 0, ...more) {
     server.kill("SIGKILL");
     await end;
   };
+  /** From now on a file that it writes may not be longer: a longer write ends it there. */
+  const limitFiles = (bytes) => {
+    const { status, error } = spawnSync("prlimit", ["--pid", String(server.pid), `--fsize=${bytes}`]);
+    if (status !== 0) throw error ?? new Error(`prlimit: ${status}`);
+  };
   /** Starts it again where it was; returns its new address. */
   const startAgain = async () => {
     ({ server, address } = await serve(folder, new URL(address).port));
@@ -114,7 +119,7 @@ export async function openStudio(folder, port = 0, ...more) {
     });
     return (await answer.json()).result;
   };
-  return { page, address, complaints, close, kill, startAgain, call, hand: () => sent };
+  return { page, address, complaints, close, kill, limitFiles, ended: () => (server.exitCode ?? server.signalCode ?? ended(server)), startAgain, call, hand: () => sent };
 }
 
 /** Brings the pointer to the tool of a training, which is taken up there; returns that place [px]. */
