@@ -55,6 +55,8 @@ struct VerifyOptions {
   std::int64_t to = -1;   ///< one past the last tick to compare; -1: to the end
   int threads = 1;        ///< >= 1; the verdict does not depend on it
   std::function<void(std::int64_t done, std::int64_t total)> progress = {};  ///< called from time to time; may be empty
+  /// Asked by every thread before each tick, unless empty; true ends it with an error.
+  std::function<bool()> should_stop = {};
   /// Called for each simulated tick, unless empty; with several threads from each of them, at any time.
   std::function<void(std::int64_t tick, const stepping::StepReport& report)> look = {};
 };

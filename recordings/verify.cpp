@@ -159,6 +159,7 @@ Result<Verdict> verify_stretch(SessionReader& reader, ReplayCursor& cursor, cons
   if (auto r = cursor.seek(stretch.from); !r) return r.errors();
   std::int64_t told = stretch.from;
   while (cursor.tick() < stretch.to) {
+    if (options.should_stop && options.should_stop()) return Error{reader.path(), "stopped", ""};
     const std::int64_t tick = cursor.tick();
     const auto stepped = cursor.step();
     if (!stepped) return stepped.errors();

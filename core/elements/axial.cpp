@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace ctpm::elements {
 namespace {
-
-double distance(const Vec3Array& p, std::int32_t a, std::int32_t b) {
-  return norm(p[std::size_t(b)] - p[std::size_t(a)]);
-}
 
 /// Springs and Kelvin units at most this many spheres apart share a batch.
 constexpr std::int32_t kBridged = 4;
@@ -116,6 +113,7 @@ AxialArrays AxialForces::arrays(const StateView& state, const double* softness) 
   m.softness = softness, m.third = or_null(third_), m.element = or_null(element_);
   m.severed = element_.empty() ? nullptr : or_null(state.axial_severed);
   m.kelvin_elongation = state.kelvin_elongation.data();
+  m.kelvin_step = {kelvin_.damping.data(), kelvin_.sum.data(), kelvin_.stiffness.data()};
   return m;
 }
 
@@ -148,15 +146,6 @@ void AxialForces::apply(int slab, const Real* v, SlabTarget<Real> result) const 
 template void AxialForces::apply(int slab, const float* v, SlabTarget<float> result) const;
 template void AxialForces::apply(int slab, const double* v, SlabTarget<double> result) const;
 
-/// The implicit step of c z' = k2 (x - z) - k1 z over `h` [s], at whose end the TPM is longer than at rest by x.
-double AxialForces::kelvin_after(double h, const StateView& state, std::size_t variable) const {
-  const AxialElements& m = model_.axial;
-  const auto i = std::size_t(of_internal_[variable]);
-  const double x = distance(state.position, m.a[i], m.b[i]) - m.rest_length[i];
-  const double damping = m.damping(i) / h;
-  return (damping * state.kelvin_elongation[variable] + m.k[i] * x) / (m.k[i] + m.kelvin_k[i] + damping);
-}
-
 /// Share of a step of `h` [s] after which the elongation of a TPM acts: 0.5 as in the midpoint rule, or more where that
 /// would overshoot the limit.
 double AxialForces::acting_part(double h, std::size_t variable) const {
@@ -165,33 +154,37 @@ double AxialForces::acting_part(double h, std::size_t variable) const {
   return std::max(0.5, 1 - m.damping(i) / (h * (m.k[i] + m.kelvin_k[i])));
 }
 
-void AxialForces::find_kelvin(double h, const StateView& state, std::vector<double>& after, std::size_t first,
-                              std::size_t last) const {
-  for (std::size_t t = first; t < last; ++t) after[t] = kelvin_after(h, state, t);
+void AxialForces::prepare_kelvin(double h, KelvinAt at) {
+  const auto is_for = [&](const KelvinSteps& steps) { return steps.h == h && steps.at == at; };
+  if (is_for(kelvin_)) return;
+  std::swap(kelvin_, kelvin_before_);
+  if (is_for(kelvin_)) return;
+  for (KelvinSteps* steps : {&kelvin_, &kelvin_before_})
+    for (auto* values : {&steps->share, &steps->damping, &steps->sum, &steps->stiffness})
+      values->resize(of_internal_.size());
+  kelvin_.h = h, kelvin_.at = at;
+  fill(kelvin_);
 }
 
-void AxialForces::prepare_acting(double h) {
-  if (acting_.h == h) return;
-  acting_.h = h;
-  for (auto* values : {&acting_.share, &acting_.damping, &acting_.sum}) values->resize(of_internal_.size());
+void AxialForces::fill(KelvinSteps& steps) const {
   const AxialElements& m = model_.axial;
   for (std::size_t t = 0; t < of_internal_.size(); ++t) {
     const auto i = std::size_t(of_internal_[t]);
-    acting_.share[t] = acting_part(h, t);
-    acting_.damping[t] = m.damping(i) / (acting_.share[t] * h);
-    acting_.sum[t] = m.k[i] + m.kelvin_k[i] + acting_.damping[t];
+    steps.share[t] = steps.at == KelvinAt::end ? 1.0 : acting_part(steps.h, t);
+    steps.damping[t] = m.damping(i) / (steps.share[t] * steps.h);
+    steps.sum[t] = m.k[i] + m.kelvin_k[i] + steps.damping[t];
+    steps.stiffness[t] = m.k[i] * (m.kelvin_k[i] + steps.damping[t]) / steps.sum[t];
   }
 }
 
-void AxialForces::find_acting_kelvin(const StateView& state, std::vector<double>& acting, int slab) const {
+void AxialForces::find_kelvin(const StateView& state, std::vector<double>& kelvin, int slab) const {
   const Batches& batches = of_slab_[std::size_t(slab)];
-  kernels_.find_acting_kelvin(arrays(state, nullptr), {acting_.damping.data(), acting_.sum.data(), acting.data()},
-                              batches.data(), batches.data() + batches.size());
+  kernels_.find_kelvin(arrays(state, nullptr), batches.data(), batches.data() + batches.size(), kelvin.data());
 }
 
 void AxialForces::finish_kelvin(const std::vector<double>& before, std::vector<double>& kelvin, std::size_t first,
                                 std::size_t last) const {
-  const double *z = before.data(), *share = acting_.share.data();
+  const double *z = before.data(), *share = kelvin_.share.data();
   double* __restrict out = kelvin.data();
   for (std::size_t t = first; t < last; ++t) out[t] = z[t] + (out[t] - z[t]) / share[t];
 }

@@ -32,21 +32,22 @@ class AxialForces {
   void prepare_linearise();
 
   /// Adds the elastic forces [N] to `m.force` and the diagonal of h^2 K + h C [kg] to `m.blocks`. Stores the coupling
-  /// for apply().
+  /// for apply(). prepare_kelvin() must have been called for the same step.
   void linearise(AxialArrays m, int slab);
 
   /// result += coupling times `v`, in the precision of `v`, float or double.
   template <class Real>
   void apply(int slab, const Real* v, SlabTarget<Real> result) const;
 
-  /// Prepares find_acting_kelvin() and finish_kelvin() for steps of `h` [s]; allocates at the first call.
-  void prepare_acting(double h);
+  /// Whether find_kelvin() finds elongations at the end of a step, or those that act in it.
+  enum class KelvinAt { end, acting };
 
-  /// Elements::find_acting_kelvin() for the elements whose first sphere is the slab's own.
-  void find_acting_kelvin(const StateView& state, std::vector<double>& acting, int slab) const;
-  /// Elements::find_kelvin() and finish_kelvin() for internal variables [first, last).
-  void find_kelvin(double h, const StateView& state, std::vector<double>& after, std::size_t first,
-                   std::size_t last) const;
+  /// Prepares find_kelvin(), finish_kelvin() and linearise() for steps of `h` [s]; allocates at the first call.
+  void prepare_kelvin(double h, KelvinAt at);
+
+  /// Elements::find_kelvin() or find_acting_kelvin() for the elements whose first sphere is the slab's own.
+  void find_kelvin(const StateView& state, std::vector<double>& kelvin, int slab) const;
+  /// Elements::finish_kelvin() for internal variables [first, last).
   void finish_kelvin(const std::vector<double>& before, std::vector<double>& kelvin, std::size_t first,
                      std::size_t last) const;
 
@@ -61,16 +62,16 @@ class AxialForces {
   Run find_run(std::size_t first, const parallel::Slabs& slabs) const;
   std::vector<double> parameters_of(const Run& run) const;
   void add_places(const Run& run);
-  /// What find_acting_kelvin() needs of each internal variable and length of step: divisions that every step repeats.
-  struct Acting {
-    double h = 0;                 ///< step that the rest is for [s]
-    std::vector<double> share;    ///< acting_part() (internal_count)
-    std::vector<double> damping;  ///< over share times h [N/m]
-    std::vector<double> sum;      ///< of both stiffnesses and that [N/m]
+  /// What find_kelvin() needs of each internal variable and length of step: divisions that every step repeats.
+  struct KelvinSteps {
+    double h = 0;  ///< step that the rest is for [s]
+    KelvinAt at = KelvinAt::end;
+    std::vector<double> share;                    ///< of the step after which the elongation is wanted (internal_count)
+    std::vector<double> damping, sum, stiffness;  ///< as in elements::KelvinStep
   };
 
-  double kelvin_after(double h, const StateView& state, std::size_t variable) const;
   double acting_part(double h, std::size_t variable) const;
+  void fill(KelvinSteps& steps) const;
 
   using Batches = std::vector<AxialBatch>;
 
@@ -82,7 +83,7 @@ class AxialForces {
   std::vector<std::int32_t> third_;
   std::vector<std::int32_t> element_;      ///< AxialArrays::element; empty without a scalpel (place_count)
   std::vector<std::int32_t> of_internal_;  ///< row of Model::axial that has the internal variable (internal_count)
-  Acting acting_;
+  KelvinSteps kelvin_, kelvin_before_;     ///< SDIRK2 and what it falls back to take steps of two lengths
   std::size_t place_count_ = 0;
   std::vector<float> root_[3];  ///< direction times the root of the axial coupling [kg^1/2]; empty until needed
   std::vector<float> across_;   ///< coupling across the direction: h^2 tension / length [kg], >= 0

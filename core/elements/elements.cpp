@@ -94,8 +94,9 @@ void Elements::add_forces_of(int slab, Arrays arrays, Coordinates& force) {
   if (!is_thick) bring(own, 3, force.data());
 }
 
-void Elements::prepare_linearise() {
+void Elements::prepare_linearise(double h) {
   constraints_.prepare_linearise(), angles_.prepare_linearise(), axial_.prepare_linearise();
+  axial_.prepare_kelvin(h, AxialForces::KelvinAt::end);
   make_room(9, 3);
 }
 
@@ -112,28 +113,26 @@ void Elements::linearise_of(int slab, Arrays arrays, double h, bool with_dashpot
   bring(own, 3, force.data()), bring(own_blocks, 6, blocks.data());
 }
 
-template <class Part>
-void Elements::for_internal(std::size_t count, Part&& part) const {
-  const std::size_t parts = std::size_t(slabs_.count());
-  if (count == 0) return;
-  team_.for_each(slabs_.count(),
-                 [&](int slab) { part(count * std::size_t(slab) / parts, count * std::size_t(slab + 1) / parts); });
+void Elements::find_kelvin_of(double h, AxialForces::KelvinAt at, const StateView& state, std::vector<double>& kelvin) {
+  if (state.kelvin_elongation.empty()) return;
+  axial_.prepare_kelvin(h, at);
+  team_.for_each(slabs_.count(), [&](int slab) { axial_.find_kelvin(state, kelvin, slab); });
 }
 
-void Elements::find_kelvin(double h, const StateView& state, std::vector<double>& after) const {
-  for_internal(state.kelvin_elongation.size(),
-               [&](std::size_t first, std::size_t last) { axial_.find_kelvin(h, state, after, first, last); });
+void Elements::find_kelvin(double h, const StateView& state, std::vector<double>& after) {
+  find_kelvin_of(h, AxialForces::KelvinAt::end, state, after);
 }
 
 void Elements::find_acting_kelvin(double h, const StateView& state, std::vector<double>& acting) {
-  axial_.prepare_acting(h);
-  if (state.kelvin_elongation.empty()) return;
-  team_.for_each(slabs_.count(), [&](int slab) { axial_.find_acting_kelvin(state, acting, slab); });
+  find_kelvin_of(h, AxialForces::KelvinAt::acting, state, acting);
 }
 
 void Elements::finish_kelvin(const std::vector<double>& before, std::vector<double>& kelvin) const {
-  for_internal(kelvin.size(),
-               [&](std::size_t first, std::size_t last) { axial_.finish_kelvin(before, kelvin, first, last); });
+  const std::size_t count = kelvin.size(), parts = std::size_t(slabs_.count());
+  if (count == 0) return;
+  team_.for_each(slabs_.count(), [&](int slab) {
+    axial_.finish_kelvin(before, kelvin, count * std::size_t(slab) / parts, count * std::size_t(slab + 1) / parts);
+  });
 }
 
 }  // namespace ctpm::elements

@@ -41,7 +41,7 @@ class Elements {
 
   /// Kelvin elongations of the two-sphere TPMs [m] at the end of a step of `h` [s] that starts from
   /// StateView::kelvin_elongation and ends with the spheres at StateView::position. First order (internal_count).
-  void find_kelvin(double h, const StateView& state, std::vector<double>& after) const;
+  void find_kelvin(double h, const StateView& state, std::vector<double>& after);
 
   /// Kelvin elongations [m] that act in a step of `h` [s], with the spheres at StateView::position in its middle.
   /// Second order if the step resolves them (internal_count).
@@ -54,9 +54,7 @@ class Elements {
   const parallel::Slabs& slabs() const { return slabs_; }
 
  private:
-  /// Calls part(first, last) for ranges of internal variables, in parallel.
-  template <class Part>
-  void for_internal(std::size_t count, Part&& part) const;
+  void find_kelvin_of(double h, AxialForces::KelvinAt at, const StateView& state, std::vector<double>& kelvin);
 
   /// Scratch memory for the sums of one slab, before they are added to the arrays of all spheres. Unused with a single
   /// slab.
@@ -74,7 +72,7 @@ class Elements {
   Arrays arrays(const StateView& state);
   void measure(const Arrays& arrays);
   void add_forces_of(int slab, Arrays arrays, Coordinates& force);
-  void prepare_linearise();
+  void prepare_linearise(double h);
   void linearise_of(int slab, Arrays arrays, double h, bool with_dashpots, Coordinates& force, DiagonalBlocks& blocks);
 
   void make_room(std::size_t full_rows, std::size_t single_rows);
@@ -106,7 +104,7 @@ void Elements::add_forces(const StateView& state, Coordinates& force, Before&& b
 template <class Before>
 void Elements::linearise(const StateView& state, double h, bool with_dashpots, Coordinates& force,
                          DiagonalBlocks& blocks, Before&& before) {
-  prepare_linearise();
+  prepare_linearise(h);
   const Arrays all = arrays(state);
   measure(all);
   team_.for_each(slabs_.count(),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "studio/render/noise.h"
 #include "studio/render/shading_correction.h"
@@ -60,7 +61,8 @@ std::size_t DrawnCut::bytes() const {
   return bytes;
 }
 
-CutFollower::CutFollower(const Model& model, std::uint32_t stage) : stage_(stage) {
+CutFollower::CutFollower(const Model& model, std::uint32_t stage, std::shared_ptr<const DrawnCut> whole)
+    : stage_(stage), drawn_(std::move(whole)) {
   for (std::size_t i = 0; i < model.surfaces.size(); ++i) surfaces_.emplace_back(model, i);
 }
 
@@ -82,11 +84,23 @@ void CutFollower::draw_surfaces(const State& state) {
   DrawnCut drawn{CutKey(state), {}, ++made, {}};
   for (const render::CutSurface& cut : surfaces_) drawn.surfaces.push_back(cut.surface());
   drawn.triangles = triangles_message(surfaces_, stage_, drawn.topology);
+  // A cut may move what its edge goes through, which comes with each frame, and leave the triangles as they are.
+  constexpr std::size_t kBeforeNumber = 8, kBehindNumber = 12;
+  const auto same = [&](std::size_t from, std::size_t to) {
+    return drawn.triangles.compare(from, to - from, drawn_->triangles, from, to - from) == 0;
+  };
+  if (drawn_ && same(0, kBeforeNumber) && same(kBehindNumber, std::string::npos))
+    drawn.topology = drawn_->topology, drawn.triangles = drawn_->triangles;
   drawn_ = std::make_shared<const DrawnCut>(std::move(drawn));
 }
 
 DrawnCuts::DrawnCuts(const Model& model, std::uint32_t stage) {
   keep_for_good(CutFollower(model, stage).draw(rest_state(model)));
+}
+
+std::shared_ptr<const DrawnCut> DrawnCuts::whole() const {
+  const std::lock_guard lock(mutex_);
+  return for_good_.front();
 }
 
 std::shared_ptr<const DrawnCut> DrawnCuts::of(const State& state) const {

@@ -28,8 +28,8 @@ struct DrawnCut {
 /// Draws the cuts of States. A State is quick that has the cut of the one before, or more than that.
 class CutFollower {
  public:
-  /// `model` must outlive this. `stage`: where the page shows it.
-  CutFollower(const Model& model, std::uint32_t stage);
+  /// `model` must outlive this. `stage`: where the page shows it. `whole`: what is drawn of no cut, if it is known.
+  CutFollower(const Model& model, std::uint32_t stage, std::shared_ptr<const DrawnCut> whole = nullptr);
 
   /// What is drawn of the cut of `state`.
   std::shared_ptr<const DrawnCut> draw(const State& state);
@@ -50,6 +50,9 @@ class DrawnCuts {
  public:
   /// Begins with what is whole. `stage`: where the page shows it.
   DrawnCuts(const Model& model, std::uint32_t stage);
+
+  /// What is drawn of no cut.
+  std::shared_ptr<const DrawnCut> whole() const;
 
   /// What is drawn of a State's cut; null: it was not drawn yet, or is forgotten.
   std::shared_ptr<const DrawnCut> of(const State& state) const;

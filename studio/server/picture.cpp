@@ -49,7 +49,7 @@ std::shared_ptr<const DrawnCut> PictureMaker::draw(const State& state) {
   }
   const bool is_begun = best != followers_.end() && !best->follower.drawn()->key.is_whole();
   if (!is_begun && followers_.size() < kMostFollowed)
-    best = followers_.insert(followers_.end(), {CutFollower(model_, stage_)});
+    best = followers_.insert(followers_.end(), {CutFollower(model_, stage_, cuts_->whole())});
   else if (!is_begun)
     best = std::min_element(followers_.begin(), followers_.end(),
                             [](const Follower& a, const Follower& b) { return a.used < b.used; });

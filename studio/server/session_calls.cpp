@@ -98,7 +98,7 @@ Result<std::string> verify_session(Parameters& parameters, const CallContext& co
   Result<recordings::SessionReader> reader = open_reader(context, path);
   if (!reader) return reader.errors();
   recordings::VerifyOptions options;
-  options.progress = context.progress;
+  options.progress = context.progress, options.should_stop = context.should_stop;
   const Result<session::WholeVerdict> verdict = session::verify_whole(*reader, options);
   if (!verdict) return verdict.errors();
   output::JsonWriter json;

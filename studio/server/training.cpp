@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -37,13 +38,15 @@ double value_of(const recordings::SessionStatistics& statistics, std::string_vie
   return found == values.end() ? 0 : found->second;
 }
 
-std::string ended_text(const std::string& shown, const Result<session::RecordOutcome>& outcome) {
+/// `began`: device_clock() when the first tick began.
+std::string ended_text(const std::string& shown, const Result<session::RecordOutcome>& outcome, double began) {
   output::JsonWriter json;
   json.begin_object().member("path", std::string_view(shown)).key("errors");
   write_errors(json, outcome ? Errors{} : outcome.errors());
   if (outcome) {
     const recordings::SessionStatistics& s = outcome->statistics;
-    json.member("ticks", outcome->run.ticks)
+    json.member("began_s", began)
+        .member("ticks", outcome->run.ticks)
         .member("late_ticks", outcome->run.late_ticks)
         .member("slip_s", s.slip)
         .member("slip_max_s", s.slip_max)
@@ -152,7 +155,10 @@ void Training::tick() {
     options.should_stop = should_stop;
     session::RecentTimes times;
     Precedence precedence(start_->model.tick);
+    double began = INFINITY;  // a tick may begin late, never early
     options.watch = [&](const State& state, const recordings::TickRecord& record, const session::RunOutcome& so_far) {
+      const double done = double(state.tick - 1) * start_->model.tick + record.slip;
+      began = std::min(began, devices::device_clock() - record.tick_time - done);
       times.add(record.tick_time), precedence.go_on();
       newest_.offer(state, record, so_far.late_ticks, times.p99());
     };
@@ -160,9 +166,9 @@ void Training::tick() {
     const session::UnkeptSession unkept;
     const std::string file = request_.file.empty() ? unkept.file() : request_.file;
     const Result<session::RecordOutcome> outcome = session::record_session(*start_, *source_, file, false, options);
-    outbox_->send(ended_text(request_.file.empty() ? "" : request_.shown, outcome));
+    outbox_->send(ended_text(request_.file.empty() ? "" : request_.shown, outcome, began));
   } else {
-    outbox_->send(ended_text("", Error{request_.shown, "ended before the hand moved; nothing was recorded", ""}));
+    outbox_->send(ended_text("", Error{request_.shown, "ended before the hand moved; nothing was recorded", ""}, 0));
   }
   has_ended_ = true;
 }

@@ -95,17 +95,16 @@ void add_axial_forces(const AxialArrays& m, const AxialBatch* first, const Axial
     add_axial_forces_with<false>(m, first, last);
 }
 
-/// The implicit step of c z' = k2 (x - z) - k1 z up to where an elongation acts.
-void find_acting_kelvin(const AxialArrays& m, const ActingKelvin& acting, const AxialBatch* first,
-                        const AxialBatch* last) {
+/// The implicit step of c z' = k2 (x - z) - k1 z.
+void find_kelvin(const AxialArrays& m, const AxialBatch* first, const AxialBatch* last, double* elongation) {
   for (; first != last; ++first) {
     if (first->law != AxialLaw::two_sphere_tpm || !first->adds_a) continue;
     const double *rest = m.parameters + first->parameters, *k = rest + first->count;
     const double *xa = m.x + first->a, *ya = m.y + first->a, *za = m.z + first->a;
     const double *xb = m.x + first->b, *yb = m.y + first->b, *zb = m.z + first->b;
-    const double *z = m.kelvin_elongation + first->internal, *damping = acting.damping + first->internal,
-                 *sum = acting.sum + first->internal;
-    double* __restrict out = acting.elongation + first->internal;
+    const double *z = m.kelvin_elongation + first->internal, *damping = m.kelvin_step.damping + first->internal,
+                 *sum = m.kelvin_step.sum + first->internal;
+    double* __restrict out = elongation + first->internal;
     CTPM_INDEPENDENT
     for (int32_t i = 0; i < first->count; ++i) {
       const double dx = xb[i] - xa[i], dy = yb[i] - ya[i], dz = zb[i] - za[i];
@@ -122,15 +121,13 @@ void find_tension(const AxialArrays& m, const AxialBatch& batch, const Direction
   const double h = m.h, *length = d.length;
   const double *rest = m.parameters + batch.parameters, *k = rest + n, *c = k + n;
   if (batch.law == AxialLaw::two_sphere_tpm) {
-    const double *spring = k, *unit = c, *viscosity = c + n;
-    const double* kelvin = m.kelvin_elongation + batch.internal;
+    const double *damping = m.kelvin_step.damping + batch.internal, *sum = m.kelvin_step.sum + batch.internal,
+                 *stiffness = m.kelvin_step.stiffness + batch.internal, *kelvin = m.kelvin_elongation + batch.internal;
     // Solving the implicit step of c z' + k1 z = k2 (x - z) for z leaves a spring with an offset.
     CTPM_INDEPENDENT
     for (int32_t i = 0; i < n; ++i) {
-      const double damping = viscosity[i] / h, sum = spring[i] + unit[i] + damping;
-      const double stiffness = spring[i] * (unit[i] + damping) / sum;
-      tension[i] = stiffness * (length[i] - rest[i]) - spring[i] * damping * kelvin[i] / sum;
-      coupling[i] = h * h * stiffness;
+      tension[i] = stiffness[i] * (length[i] - rest[i]) - k[i] * damping[i] * kelvin[i] / sum[i];
+      coupling[i] = h * h * stiffness[i];
     }
   } else if (batch.law == AxialLaw::kelvin_unit) {
     CTPM_INDEPENDENT

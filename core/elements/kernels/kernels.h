@@ -44,6 +44,12 @@ struct AxialBatch {
   AxialLaw law;           ///< loops branch on it once per batch
 };
 
+/// What an implicit step needs of each two-sphere TPM, with c' = c over the step or over a share of it, after which an
+/// elongation is wanted [N/m] (internal_count each).
+struct KelvinStep {
+  const double *damping, *sum, *stiffness;  ///< c'; k + kelvin_k + c'; k (kelvin_k + c') / sum
+};
+
 /// Arrays that the axial loops read and write. A pointer is null if the Model has no such array.
 struct AxialArrays {
   std::size_t spheres;
@@ -54,16 +60,11 @@ struct AxialArrays {
   const std::int32_t* element;       ///< row of Model::axial; arbitrary at places without an element (place_count)
   const std::uint8_t* severed;       ///< (axial_count)
   const double* kelvin_elongation;   ///< (internal_count)
+  KelvinStep kelvin_step;            ///< of `h`, or of what find_kelvin() finds
   SlabTarget<double> force, blocks;  ///< three and six rows
   double h;
   bool with_dashpots;                        ///< the forces of a linearisation include those of dashpots
   float *root_x, *root_y, *root_z, *across;  ///< linearised coupling (place_count)
-};
-
-/// What the Kelvin elongations follow from that act in a step (internal_count each).
-struct ActingKelvin {
-  const double *damping, *sum;  ///< [N/m]
-  double* elongation;           ///< result [m]
 };
 
 /// Lines of three spheres whose middle is pulled towards the midpoint of its ends: constraints and angle springs.
@@ -150,7 +151,8 @@ struct SolverKernels {
 struct Kernels {
   void (*add_axial_forces)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last);
   void (*linearise_axial)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last);
-  void (*find_acting_kelvin)(const AxialArrays&, const ActingKelvin&, const AxialBatch* first, const AxialBatch* last);
+  /// Writes Kelvin elongations [m] (internal_count).
+  void (*find_kelvin)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last, double* elongation);
 
   /// Computes lambda of lines whose middle spheres are in the slab, and the softness of those spheres (Eq. 8).
   void (*measure_line)(const LineArrays&, const LineBatch&);

@@ -17,7 +17,7 @@ export function Compare({ connection, player, listing, comparison, onComparison,
 }) {
   const [error, setError] = useState<Error | null>(null);
   const [progress, setProgress] = useState<[number, number] | null>(null);
-  const running = useRef<AbortController | null>(null);
+  const running = useRef<AbortController | null>(null), shown = useRef<HTMLDivElement>(null);
   const first = player.tracks.get(0)!.session, second = player.tracks.get(1)?.session;
 
   const align = (kind: string) => {
@@ -36,6 +36,8 @@ export function Compare({ connection, player, listing, comparison, onComparison,
       const result = await connection.call<ComparisonResult>("session.compare", { expert: first.path, trainee: second!.path },
         { progress: (done, total) => setProgress([done, total]), signal: running.current.signal });
       onComparison(result);
+      // What was asked for may be below the panel's end, or the window's.
+      requestAnimationFrame(() => requestAnimationFrame(() => shown.current?.querySelector(".jumps")?.scrollIntoView({ block: "nearest" })));
       return result;
     } catch (failure) {
       setError(failure as Error);
@@ -84,7 +86,7 @@ export function Compare({ connection, player, listing, comparison, onComparison,
         )}
         <Problems error={error} />
       </Section>
-      {second && comparison && <Result comparison={comparison} onMoment={(time) => player.moveBeside(time, comparison)} />}
+      {second && comparison && <div ref={shown}><Result comparison={comparison} onMoment={(time) => player.moveBeside(time, comparison)} /></div>}
     </>
   );
 }

@@ -96,7 +96,7 @@ export function ExportForm({ connection, player, look }: { connection: Connectio
         {field("from [s]", from, setFrom, "number")}
         {field("to [s]", to, setTo, "number")}
       </div>
-      <button type="button" onClick={around}>1 s around {seconds(player.time, 2)}</button>
+      <button type="button" onClick={around}>1 s before {seconds(player.time, 2)} to 1 s after</button>
       <div class="pair">
         {field("times real speed", speed, setSpeed, "number")}
         {field("pictures a second", fps, setFps, "number")}

@@ -276,14 +276,17 @@ function Moment({ connection, player, frame, other }: { connection: Connection; 
   const [verdict, setVerdict] = useState<{ same: boolean; text: string } | null>(null);
   const [progress, setProgress] = useState<[number, number] | null>(null);
   const [error, setError] = useState<Error | null>(null);
+  const running = useRef<AbortController | null>(null);
   const { path, info } = player.tracks.get(0)!.session;
   useEffect(() => setVerdict(null), [path]);
 
   const verify = async () => {
     setError(null);
     setProgress([0, 1]);
+    running.current = new AbortController();
     try {
-      setVerdict(await connection.call("session.verify", { path }, { progress: (done, total) => setProgress([done, total]) }));
+      setVerdict(await connection.call("session.verify", { path },
+        { progress: (done, total) => setProgress([done, total]), signal: running.current.signal }));
     } catch (failure) {
       setError(failure as Error);
     }
@@ -330,7 +333,7 @@ function Moment({ connection, player, frame, other }: { connection: Connection; 
           ["behind the clock", behind(info.slip_s, info.slip_max_s)],
         ]} />
         {[info.physics_remark, ...info.remarks].filter(Boolean).map((remark) => <p key={remark} class="warning">{remark}</p>)}
-        {progress ? <Working what="verifying" done={progress[0]} total={progress[1]} />
+        {progress ? <Working what="verifying" done={progress[0]} total={progress[1]} onCancel={() => running.current?.abort()} />
           : <button type="button" onClick={() => void verify()}>Verify the replay</button>}
         {verdict && <p class={verdict.same ? "good" : "warning"} role="status">{verdict.text}</p>}
         <Problems error={error} />

@@ -14,13 +14,14 @@ interface Row {
   title: string;
   unit: string;
   scale: number; // of the values of the timeline
+  digits: number; // of a value that is written
   of(data: TimelineData): number[];
 }
 
 const kRows: Row[] = [
-  { title: "force", unit: "N", scale: 1, of: (data) => data.force_n },
-  { title: "depth", unit: "mm", scale: 1e3, of: (data) => data.depth_m },
-  { title: "speed", unit: "mm/s", scale: 1e3, of: (data) => data.speed_m_per_s },
+  { title: "force", unit: "N", scale: 1, digits: 2, of: (data) => data.force_n },
+  { title: "depth", unit: "mm", scale: 1e3, digits: 2, of: (data) => data.depth_m },
+  { title: "speed", unit: "mm/s", scale: 1e3, digits: 1, of: (data) => data.speed_m_per_s },
 ];
 const kAxis = 64, kRight = 14, kHeight = 54; // [px]
 const kPoints = 3000; // of a curve
@@ -37,6 +38,12 @@ function mostIn(values: number[], duration: number, from: number, to: number): n
   let most = values[first];
   for (let i = first + 1; i <= last; ++i) most = Math.max(most, values[i]);
   return most;
+}
+
+/** The value at a moment: of the part that ends there, as the picture shows the tick that was done last. */
+function valueAt(values: number[], duration: number, time: number): number | null {
+  const middle = time - duration / values.length / 2;
+  return time < 0 ? null : mostIn(values, duration, Math.max(0, middle), Math.max(0, middle));
 }
 
 function options(width: number, colours: string[]): uPlot.Options {
@@ -60,6 +67,7 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
   const box = useRef<HTMLDivElement>(null), head = useRef<HTMLDivElement>(null), slider = useRef<HTMLInputElement>(null);
   const first = player.tracks.get(0)?.timeline ?? null, second = player.tracks.get(1)?.timeline ?? null;
   const { span, offset, path } = player;
+  const rows = useRef<{ element: HTMLElement; at(): (number | null)[]; digits: number }[]>([]); // what each writes beside its name
   const [zoom, setZoom] = useState<{ from: number; to: number } | null>(null); // null: everything is shown
   const from = Math.max(zoom?.from ?? span.from, span.from), to = Math.max(Math.min(zoom?.to ?? span.to, span.to), from);
   const shareOf = (time: number) => (to > from ? (time - from) / (to - from) : 0);
@@ -70,9 +78,10 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
     const step = (to - from) / kPoints;
     const times = Array.from({ length: kPoints }, (_, i) => from + (i + 0.5) * step);
     const plots: uPlot[] = [];
-    const add = (title: string, series: (number | null)[][], colours: string[]) => {
+    const add = (title: string, series: (number | null)[][], colours: string[], digits: number, at: () => (number | null)[]) => {
       const row = holder.appendChild(document.createElement("div"));
       row.dataset.title = title;
+      rows.current.push({ element: row, at, digits });
       plots.push(new uPlot(options(holder.clientWidth, colours.slice(0, series.length)), [times, ...series], row));
     };
     const half = step / 2;
@@ -85,14 +94,23 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
       });
       const series = [over(first, (t) => t)];
       if (second) series.push(over(second, (t) => player.besideAt(t)));
-      add(`${row.title} [${row.unit}]`, series, [kFirst, kSecond]);
+      const now = (data: TimelineData, stage: number) => {
+        const value = valueAt(row.of(data), data.duration_s, player.timeOf(stage));
+        return value === null ? null : value * row.scale;
+      };
+      add(`${row.title} [${row.unit}]`, series, [kFirst, kSecond], row.digits, () => [now(first, 0), ...(second ? [now(second, 1)] : [])]);
     }
-    if (second)
+    if (second) {
+      const forceAt = (data: TimelineData, stage: number) => valueAt(data.force_n, data.duration_s, player.timeOf(stage));
       add("difference of force [N]", [times.map((t) => {
         const own = mostIn(first.force_n, first.duration_s, t - half, t + half);
         const other = mostIn(second.force_n, second.duration_s, player.besideAt(t - half), player.besideAt(t + half));
         return own === null || other === null ? null : other - own;
-      })], [kDifference]);
+      })], [kDifference], 2, () => {
+        const own = forceAt(first, 0), other = forceAt(second, 1);
+        return [own === null || other === null ? null : other - own];
+      });
+    }
     const observer = new ResizeObserver(() => {
       for (const plot of plots) plot.setSize({ width: holder.clientWidth, height: kHeight });
     });
@@ -100,6 +118,7 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
     return () => {
       observer.disconnect();
       for (const plot of plots) plot.destroy();
+      rows.current = [];
       holder.replaceChildren();
     };
   }, [first, second, from, to, offset, path]);
@@ -110,6 +129,10 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
       head.current?.style.setProperty("--at", String(share));
       if (slider.current && document.activeElement !== slider.current) slider.current.value = String(player.time);
       slider.current?.setAttribute("aria-valuetext", seconds(player.time));
+      for (const { element, at, digits } of rows.current) {
+        const text = at().map((value) => (value === null ? "–" : value.toFixed(digits))).join(" · ");
+        if (element.dataset.at !== text) element.dataset.at = text;
+      }
     };
     place();
     const timer = setInterval(place, 40);

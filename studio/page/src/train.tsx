@@ -23,6 +23,14 @@ function showForce(bar: HTMLElement | null, trainer: Trainer): void {
   bar?.style.setProperty("transform", `scaleY(${Math.min(1, force / (trainer.scene?.view.damage_force_n || kForceLimit))})`);
 }
 
+/** Moves the ring that shows where a pointer takes the tool up. */
+function placeRing(ring: HTMLElement | null, trainer: Trainer): void {
+  if (!ring) return;
+  const at = trainer.toolPixel;
+  ring.hidden = at === null;
+  if (at) ring.style.setProperty("transform", `translate(${at.x}px, ${at.y}px)`);
+}
+
 type Phase = "choose" | "loading" | "running" | "ended";
 
 /** A name for a session that does not exist yet: mine-1.ctpm ... */
@@ -52,7 +60,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onAuth
   const [, setTick] = useState(0);
   const last = useRef<{ x: number; y: number } | null>(null);
   const [isTouch, setTouch] = useState(() => matchMedia("(pointer: coarse)").matches);
-  const fingers = useRef(new Set<number>()), bar = useRef<HTMLDivElement>(null);
+  const fingers = useRef(new Set<number>()), bar = useRef<HTMLDivElement>(null), ring = useRef<HTMLDivElement>(null);
   const loading = useRef<AbortController | null>(null);
   const sound = useRef(new ForceSound());
 
@@ -71,6 +79,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onAuth
       last = performance.now();
       setTick((t) => t + 1);
     };
+    viewer.onDraw = () => placeRing(ring.current, made);
     made.onWaiting = setWaits;
     made.onFailing = (problem) => setError(new Error(`Recording fails now: ${problem}`));
     made.onEnded = (content) => {
@@ -152,16 +161,30 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onAuth
     return () => kinds.forEach((kind) => removeEventListener(kind, count));
   }, []);
 
+  /** The pointer holds the tool from now on, or not. */
+  const hold = (isHeld: boolean) => {
+    if (!trainer || trainer.isHeld === isHeld) return;
+    trainer.isHeld = isHeld;
+    setTick((t) => t + 1);
+  };
   const move = (event: PointerEvent) => {
-    if (phase !== "running" || trainer?.awaited || (event.buttons & 2) !== 0) return;
+    if (phase !== "running" || !trainer || trainer.awaited) return;
+    // While the view is turned the tool stays, and does not follow afterwards.
+    if ((event.buttons & 2) !== 0) return void (last.current = null);
     if (event.pointerType === "touch" && (event.buttons === 0 || fingers.current.size > 1)) return;
-    // A pointer that comes from elsewhere does not carry the hand along.
     const from = last.current;
     last.current = { x: event.clientX, y: event.clientY };
-    if (document.pointerLockElement === canvas.current) trainer?.movePixels(event.movementX, event.movementY);
-    else if (from) trainer?.movePixels(event.clientX - from.x, event.clientY - from.y);
+    if (!trainer.isHeld) {
+      const box = canvas.current!.getBoundingClientRect();
+      trainer.reach(event.clientX - box.left, event.clientY - box.top);
+      if (trainer.isHeld) setTick((t) => t + 1);
+    } else if (document.pointerLockElement === canvas.current) trainer.movePixels(event.movementX, event.movementY);
+    else if (from) trainer.movePixels(event.clientX - from.x, event.clientY - from.y);
   };
-  const leave = () => (last.current = null);
+  const leave = () => {
+    last.current = null;
+    hold(false);
+  };
   // The pointer's motion as it comes, not with the screen's next frame.
   const moved = useRef(move);
   moved.current = move;
@@ -171,9 +194,12 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onAuth
     target.addEventListener(kind, take);
     return () => target.removeEventListener(kind, take);
   }, []);
-  const lock = (event: PointerEvent) => {
-    if (phase === "running" && !trainer?.awaited && event.button === 0 && event.pointerType === "mouse")
-      void Promise.resolve(canvas.current?.requestPointerLock?.()).catch(() => {});
+  const press = (event: PointerEvent) => {
+    // What holds the mouse needs no looking around, and a locked pointer cannot be captured for it.
+    if (phase === "running" && !trainer?.awaited && event.pointerType === "mouse" && (event.button === 0 || document.pointerLockElement)) event.stopImmediatePropagation();
+    if (phase !== "running" || trainer?.awaited || event.button !== 0) return;
+    hold(true); // wherever it is
+    if (event.pointerType === "mouse") void Promise.resolve(canvas.current?.requestPointerLock?.()).catch(() => {});
   };
 
   const again = () => {
@@ -203,9 +229,9 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onAuth
           ))}
         </ul>
       </nav>
-      <div class={`view ${phase}${trainer?.awaited ? " watched" : ""}`}>
+      <div class={`view ${phase}${trainer?.awaited ? " watched" : trainer?.isHeld ? " held" : ""}`}>
         <canvas ref={canvas} tabIndex={0} aria-label={view ? `The scene ${view.name}; arrow keys move the tool` : "No scene"}
-          onPointerDown={lock} onPointerLeave={leave} onContextMenu={(e) => e.preventDefault()} />
+          onPointerDown={press} onPointerLeave={leave} onContextMenu={(e) => e.preventDefault()} />
         {phase === "choose" && (
           <Empty title="Choose a scene to train in">
             <p>The tool follows the mouse. The session is recorded, and measured against an expert's when you end it.</p>
@@ -220,6 +246,9 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onAuth
           <Empty title={`${trainer.awaited[0].toUpperCase()}${trainer.awaited.slice(1)}`}>
             <p role="status">{waits || "The session begins with its first pose."}</p>
           </Empty>
+        )}
+        {phase === "running" && frame && trainer && !trainer.awaited && !trainer.isHeld && !isTouch && (
+          <div ref={ring} class="take-up" hidden aria-hidden="true"><span>move the pointer here to take it up</span></div>
         )}
         {phase === "running" && frame && (
           <div class="force-bar" role="meter" aria-label="Force" aria-valuemin={0} aria-valuemax={limit} aria-valuenow={Number(force.toFixed(2))}>
@@ -258,7 +287,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onAuth
                 {kHeld.map(([text, key]) => <HeldButton key={key} text={text} onHeld={() => trainer.press(key, false)} />)}
               </div>
             )}
-            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}{isTouch ? "one finger: move · two: look around" : "mouse, arrows: move · click: hold the mouse · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · Esc: end"}</span>}
+            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}{isTouch ? "one finger: move · two: look around" : "mouse, arrows: move · click: take up the tool and hold the mouse · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · Esc: end"}</span>}
           </div>
         )}
       </div>
@@ -351,15 +380,18 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
   const [comparison, setComparison] = useState<ComparisonResult | null>(null);
   const [progress, setProgress] = useState<[number, number] | null>(null);
   const [error, setError] = useState<Error | null>(null);
+  const running = useRef<AbortController | null>(null);
 
   const others = listing.sessions.filter((session) => session.path !== ended.path);
   const compare = async () => {
     const progress = (done: number, total: number) => setProgress([done, total]);
     setError(null), setComparison(null), setVerdict(null), progress(0, 1);
+    running.current = new AbortController();
+    const { signal } = running.current;
     try {
-      setVerdict(await connection.call("session.verify", { path: ended.path }, { progress }));
+      setVerdict(await connection.call("session.verify", { path: ended.path }, { progress, signal }));
       progress(0, 1);
-      if (expert) setComparison(await connection.call<ComparisonResult>("session.compare", { expert, trainee: ended.path }, { progress }));
+      if (expert) setComparison(await connection.call<ComparisonResult>("session.compare", { expert, trainee: ended.path }, { progress, signal }));
     } catch (failure) {
       setError(failure as Error);
     }
@@ -392,11 +424,12 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
       {ended.path && (
         <Section title="Verify and compare">
           <ExpertChoice listing={others} expert={expert} onExpert={onExpert} use="to compare with" />
-          {progress ? <Working what={verdict ? "comparing" : "verifying"} done={progress[0]} total={progress[1]} />
+          {progress ? <Working what={verdict ? "comparing" : "verifying"} done={progress[0]} total={progress[1]} onCancel={() => running.current?.abort()} />
             : <button type="button" class="main" onClick={() => void compare()}>{expert ? "Verify and compare" : "Verify"}</button>}
           {verdict && <p class={verdict.same ? "good" : "warning"} role="status">{verdict.text}</p>}
           <Problems error={error} />
-          <ShownCommand text={expert ? command("compare", expert, ended.path, "-o", "report") : command("verify", ended.path)} />
+          <ShownCommand text={command("verify", ended.path)} />
+          {expert && <ShownCommand text={command("compare", expert, ended.path, "-o", "report")} />}
         </Section>
       )}
       {comparison && <Result comparison={comparison} onMoment={(besideTime) => onReview({ session: expert, beside: ended.path, besideTime, comparison })} />}

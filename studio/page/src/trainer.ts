@@ -17,6 +17,7 @@ const kTurnStep = Math.PI / 36;
 const kPadSpeed = 0.06, kPadTurn = Math.PI / 2; // of a stick or trigger that is fully pressed [m/s], [rad/s]
 const kHalfGain = 6; // force at which the hand follows the pointer half as far [N]
 const kEdge = 0.93; // of the picture that the hand may reach
+const kTakeUp = 30; // from the tool to a pointer that takes it up [px]
 const kSteep = 0.85; // cosine between up and the line of sight, beyond which the viewer looks from above
 const kLookAhead = 1; // of the expert's motion [s]
 const kNear = 0.03; // to the expert's path, to have reached it [m]
@@ -40,6 +41,7 @@ export class Trainer {
   started: number | null = null; // when the hand was taken up [ms]
   poses = 0; // sent so far
   hasGamepad = false;
+  isHeld = false; // by the pointer, which the hand follows from then on
   ghostAhead = kGhostAhead; // of the place on the expert's path that the tool has reached [s]
   ghostAway: number | null = null; // from the tool [m]; null: there is no ghost
   awaited = ""; // where the device is that leads; empty: the page leads
@@ -107,7 +109,7 @@ export class Trainer {
     this.clear();
     const begun = await this.connection.call<BegunTraining>("train.begin",
       { scene, text, output, device, stage: kTrainStage, most_speed_m_per_s: kGuardSpeed }, { signal });
-    this.awaited = begun.awaited;
+    this.awaited = begun.awaited, this.isHeld = false;
     // A hand that is not led here leaves the mouse free to look around.
     const { controls } = this.viewer;
     controls.enableZoom = this.awaited !== "";
@@ -150,6 +152,20 @@ export class Trainer {
     const count = this.view?.tools.length ?? 0;
     if (tool < count && !this.isTaken(tool)) this.own.tool = tool;
     this.send();
+  }
+
+  /** Where the tool in the hand that is led is drawn, in pixels of the picture; null: it is not in it. */
+  get toolPixel(): { x: number; y: number } | null {
+    const { canvas } = this.viewer, frame = this.ownFrame;
+    const seen = this.viewer.pixelOf(frame && frame.tool >= 0 ? new three.Vector3(...frame.position) : this.own.hand);
+    return seen && seen.x >= 0 && seen.y >= 0 && seen.x <= canvas.clientWidth && seen.y <= canvas.clientHeight ? seen : null;
+  }
+
+  /** Takes the tool up where it is, with a pointer that comes to it at a place of the picture [px]. What holds it does not
+      move it yet, so that it is never carried from where the pointer came in. */
+  reach(x: number, y: number): void {
+    const tool = this.toolPixel;
+    this.isHeld ||= tool !== null && Math.hypot(tool.x - x, tool.y - y) < kTakeUp;
   }
 
   /** Moves the hand in its plane, by pixels of the picture. */

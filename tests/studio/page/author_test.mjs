@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { authorOf } from "./author_page.mjs";
 import { largeMesh } from "./large_mesh.mjs";
-import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings, takeUp } from "./browser.mjs";
 
 let folder, studio, page;
 
@@ -501,10 +501,9 @@ test("a scene is tried at once, as it is on the screen, and nothing is kept", as
   const started = Date.now();
   await button("Try it").click();
   await page.waitForSelector(".view.running .force-bar");
-  const box = await page.locator(".view canvas").boundingBox();
-  await page.mouse.move(box.x + box.width / 2, box.y + 60);
+  const tool = await takeUp(page);
   console.log(`author: from "Try it" to a scene of ${organs} organs in the hand ${Date.now() - started} ms`);
-  for (let i = 0; i < 40; ++i) await page.mouse.move(box.x + box.width / 2, box.y + 60 + 5 * i);
+  for (let i = 0; i < 40; ++i) await page.mouse.move(tool.x, tool.y + 5 * i);
   await page.waitForFunction(() => Number.parseFloat(document.querySelector(".force-bar output").textContent) > 0.1);
   await picture(page, "author-try");
   await page.keyboard.press("Escape");

@@ -26,6 +26,12 @@ export function makeFolder(...names) {
   return folder;
 }
 
+const nowhere = mkdtempSync(join(tmpdir(), "ctpm-no-programs-"));
+process.on("exit", () => rmSync(nowhere, { recursive: true, force: true }));
+const { DISPLAY, WAYLAND_DISPLAY, ...others } = process.env;
+/** What the program gets: no display, and neither npm nor node nor any other program. */
+const kBare = { ...others, PATH: nowhere };
+
 /** Runs the program in a folder. */
 export function ctpm(folder, ...words) {
   const done = spawnSync(program, words, { cwd: folder, encoding: "utf8", maxBuffer: 64 << 20 });
@@ -41,7 +47,7 @@ export async function ctpmBeside(folder, ...words) {
 
 /** Serves `folder`; returns the process and the address that it prints. */
 async function serve(folder, port, more = []) {
-  const server = spawn(program, ["studio", folder, "--no-open", "--port", String(port), ...more], { stdio: ["ignore", "pipe", "ignore"] });
+  const server = spawn(program, ["studio", folder, "--no-open", "--port", String(port), ...more], { env: kBare, stdio: ["ignore", "pipe", "ignore"] });
   return { server, address: await new Promise((resolve) => server.stdout.once("data", (data) => resolve(String(data).trim()))) };
 }
 
@@ -114,6 +120,17 @@ export async function openStudio(folder, port = 0, ...more) {
     return (await answer.json()).result;
   };
   return { page, address, complaints, close, kill, limitFiles, ended: () => (server.exitCode ?? server.signalCode ?? ended(server)), startAgain, call, hand: () => sent };
+}
+
+/** Brings the pointer to the tool of a training, which is taken up there; returns that place [px]. */
+export async function takeUp(page) {
+  const box = await page.locator(".view > canvas").boundingBox();
+  await page.mouse.move(box.x + 4, box.y + box.height - 4);
+  const ring = await page.waitForSelector(".take-up");
+  const at = await ring.evaluate((element) => (({ x, y, width, height }) => ({ x: x + width / 2, y: y + height / 2 }))(element.getBoundingClientRect()));
+  await page.mouse.move(at.x, at.y);
+  await page.waitForSelector(".view.held");
+  return at;
 }
 
 /** What axe-core finds that is serious. */

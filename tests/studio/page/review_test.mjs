@@ -294,6 +294,10 @@ test("two sessions beside each other, compared", async () => {
   const command = ctpmBeside(folder, ...(await page.locator("#panel .command code").first().innerText()).split(" ").slice(1));
   await page.click("#panel button.main");
   await page.waitForSelector("#panel table");
+  await page.waitForFunction(() => { // they are scrolled to
+    const { bottom } = document.querySelector("#panel .jumps").getBoundingClientRect();
+    return bottom <= document.querySelector("aside").getBoundingClientRect().bottom + 1;
+  });
   const worst = await page.locator("#panel .jumps button").first().innerText();
   const limits = (await page.locator("#panel .jumps button").allInnerTexts()).filter((moment) => moment.includes("limit"));
   for (const moment of limits) assert.match(moment, / (\S+), limit [\d.]+ \1$/, "a limit has the unit of what goes beyond it");
@@ -478,7 +482,7 @@ test("from a pair of sessions to a video of its worst moment", async () => {
   const [, shown] = / ([-\d.]+) s$/.exec(await page.locator(".captions .first").innerText());
   await page.click("#tab-export");
   await page.locator('#panel .field:has-text("file in the folder") input').fill("worst.avi");
-  await page.click("#panel button:has-text('1 s around')");
+  await page.click("#panel button:has-text('1 s before')");
   await page.click("#panel button.main");
   await page.waitForSelector("#panel .good:has-text('worst.avi')");
   console.log(`a video of the worst moment ${((Date.now() - began) / 1e3).toFixed(1)} s after the comparison was opened`);

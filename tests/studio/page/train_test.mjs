@@ -4,7 +4,7 @@ import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "no
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { openDevice } from "./igtl.mjs";
-import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings, takeUp } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm";
 const kByMouse = join(paths.pictures, "by-mouse.ctpm"); // for another build: another_build.sh
@@ -103,16 +103,14 @@ test("the mouse leads one of two hands, and the other one stays", async () => {
   assert.equal(await pressed("right hand"), "true");
   assert.equal(await pressed("ball"), "true");
   assert.ok(await page.locator(".transport button:has-text('scalpel')").isDisabled(), "it is in the other hand");
-  const box = await page.locator(".view canvas").boundingBox();
-  const middle = { x: box.x + box.width / 2, y: box.y + 60 };
+  const middle = await takeUp(page);
   await drag(middle, { x: 0, y: 150 }, 60);
   await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /force, right0?\.?0*[1-9]/.test(d.textContent)));
   await page.keyboard.press("x");
   await page.waitForFunction(() => document.querySelector(".transport button[aria-pressed=true]").textContent.includes("left hand"));
   assert.equal(await pressed("scalpel"), "true");
   const held = await reading(page, "force, right");
-  await page.mouse.move(middle.x, middle.y);
-  await drag(middle, { x: -30, y: 80 }, 30);
+  await drag({ x: middle.x, y: middle.y + 150 }, { x: -30, y: 80 }, 30);
   assert.ok((await reading(page, "force, right")) > 0.3 * held, "the ball still presses");
   await picture(page, "train-two-hands");
   assert.deepEqual(await seriousFindings(page), []);
@@ -130,7 +128,7 @@ function handAxes() {
   return { eye: camera.eye_mm.map((c) => c / 1e3), right: [y / far, -x / far, 0], up: [0, 0, 1], deep: [x / far, y / far, 0] };
 }
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const minus = (a, b) => a.map((x, i) => x - b[i]);
+const minus = (a, b) => a.map((x, i) => x - b[i]), scaled = (a, by) => a.map((x) => x * by);
 
 /** Where the hand is when it has followed the pointer. */
 async function handAtRest() {
@@ -147,9 +145,7 @@ test("the wheel moves the tool away from the viewer, and the pointer slows as th
   await page.locator("aside input").first().fill("wheel.ctpm");
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".view.running");
-  const box = await page.locator(".view canvas").boundingBox();
-  const middle = { x: box.x + box.width / 2, y: box.y + 60 };
-  await page.mouse.move(middle.x, middle.y);
+  const middle = await takeUp(page);
   const start = await handAtRest();
   const roll = async (notches) => {
     for (let i = 0; i < Math.abs(notches); ++i) await page.mouse.wheel(0, notches > 0 ? -100 : 100);
@@ -205,6 +201,58 @@ test("the wheel moves the tool away from the viewer, and the pointer slows as th
     .map((row) => row.slice(3, 6).map((mm) => Number(mm) / 1e3));
   const deepest = Math.max(...rows.map((place) => dot(minus(place, start), deep)));
   assert.ok(Math.abs(deepest - 15e-3) < 1.5e-3, `${deepest}`); // the virtual coupling overshoots
+  await page.click("button:has-text('Train again')");
+});
+
+test("the pointer takes the tool up where it is, and carries nothing along from where it came in", async () => {
+  const { right, up } = handAxes();
+  await page.locator("aside input").first().fill("");
+  await page.mouse.move(2, 700);
+  await page.click(".list button:has-text('kidney')");
+  await page.waitForSelector(".view.running");
+  await page.waitForSelector(".take-up");
+  const box = await page.locator(".view > canvas").boundingBox(), start = await handAtRest();
+  const stays = async (how) => assert.ok(Math.hypot(...minus(await handAtRest(), start)) < 1e-9, how);
+  // Over the whole organ, and out of the picture and in again.
+  const low = box.y + 0.7 * box.height;
+  await drag({ x: box.x + 10, y: low }, { x: box.width - 100, y: 0 }, 30);
+  await stays("a pointer that crosses the picture");
+  await picture(page, "train-take-up");
+  await page.mouse.move(box.x + box.width + 100, low);
+  await page.mouse.move(box.x + box.width - 200, low);
+  await stays("a pointer that comes in again");
+  assert.equal(await reading(page, "touched"), 0);
+  // At the tool it is taken up, and then follows, by as much as the pointer goes.
+  const at = await takeUp(page);
+  await stays("taking it up");
+  assert.equal(await page.locator(".take-up").count(), 0);
+  await drag(at, { x: 20, y: 0 }, 5);
+  const moved = minus(await handAtRest(), start), by = dot(moved, right);
+  assert.ok(by > 2e-3 && by < 15e-3 && Math.abs(dot(moved, up)) < 1e-6, `${moved}`);
+  await drag({ x: at.x + 20, y: at.y }, { x: -20, y: 0 }, 5);
+  assert.ok(Math.hypot(...minus(await handAtRest(), start)) < 1e-5, "and back");
+  // While the right button turns the view it stays, and does not catch up.
+  const here = await handAtRest();
+  await page.mouse.down({ button: "right" });
+  await drag(at, { x: 60, y: 0 }, 6);
+  await page.mouse.up({ button: "right" });
+  await page.mouse.move(at.x + 61, at.y);
+  await page.mouse.move(at.x + 61, at.y);
+  assert.ok(Math.hypot(...minus(await handAtRest(), here)) < 2e-3, `${minus(await handAtRest(), here)}`);
+  // A pointer that left lets go, and a press takes it up from anywhere.
+  await page.mouse.move(box.x + box.width + 100, low);
+  await page.waitForSelector(".take-up");
+  await page.mouse.move(box.x + 100, low);
+  const left = await handAtRest();
+  await page.mouse.down();
+  await page.waitForSelector(".view.held");
+  await page.mouse.move(box.x + 115, low, { steps: 3 });
+  await page.mouse.up();
+  const far = Math.hypot(...minus(await handAtRest(), left));
+  assert.ok(far > 1e-3 && far < 15e-3, `${far}`);
+  await page.evaluate(() => document.exitPointerLock());
+  await page.keyboard.press("Escape");
+  await page.waitForSelector("button:has-text('Train again')");
   await page.click("button:has-text('Train again')");
 });
 
@@ -271,8 +319,7 @@ test("the mouse presses, cuts and records", async () => {
   await page.locator("aside .field:has-text('expert') select").selectOption(kExpert);
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".view.running");
-  const box = await page.locator(".view canvas").boundingBox();
-  const middle = { x: box.x + box.width / 2, y: box.y + 60 };
+  const middle = await takeUp(page);
   assert.equal((await page.locator(".recorded").textContent()).trim(), "records mine.ctpm");
   await page.evaluate(() => {
     globalThis.heard = [];
@@ -328,6 +375,13 @@ test("the session verifies to the bit, and is compared at once", async () => {
   const same = JSON.parse(ctpm(folder, "info", "again.ctpm", "--json").out);
   assert.ok(Math.abs(same.severed - info.severed) <= 0.02 * info.severed, `${same.severed} and ${info.severed} elements are severed`);
   for (const key of ["max_force_n", "max_depth_m"]) assert.ok(Math.abs(same[key] / info[key] - 1) < 0.02, `${key}: ${same[key]} and ${info[key]}`);
+  // Its force in each tick, not only the largest one.
+  assert.equal(ctpm(folder, "replay", "again.ctpm", "--csv", "again.csv").code, 0);
+  const [mine, table] = ["mine.csv", "again.csv"].map((name) => readFileSync(join(folder, name), "utf8").trim().split("\n").slice(1).map((row) => Number(row.split(",")[14])));
+  assert.equal(mine.length, table.length);
+  const apart = Math.sqrt(mine.reduce((sum, force, i) => sum + (force - table[i]) ** 2, 0) / mine.length) / Math.max(...mine);
+  console.log(`training: the forces of ${mine.length} ticks are apart by ${(100 * apart).toFixed(3)} % of the largest (root of the mean square)`);
+  assert.ok(apart < 0.02, `${apart}`);
   console.log(`training: as a table of its motion ${same.severed} of ${info.severed} elements, ${same.max_force_n} and ${info.max_force_n} N`);
   console.log(`training: pose to tick p50 ${(1e3 * info.values.device_pose_wait_p50_s).toFixed(1)} ms, p99 ${(1e3 * info.values.device_pose_wait_p99_s).toFixed(1)} ms (on the way p99 ${(1e3 * info.values.device_pose_way_p99_s).toFixed(1)} ms), ${(1e2 * info.values.device_poses_within_5ms).toFixed(1)} % within 5 ms; between poses at most ${(1e3 * info.values.device_longest_gap_s).toFixed(0)} ms`);
 });
@@ -355,6 +409,28 @@ test("a gamepad leads the tool: the trigger presses, the shoulder changes it", a
   await page.locator("aside input").first().fill("");
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".transport .hint:has-text('gamepad')");
+  // Sticks: sideways, deep and turns about two axes; a stick that rests a little off its middle does nothing.
+  const { right, up, deep } = handAxes(), start = await handAtRest();
+  const hold = async (axis, value, time = 250) => {
+    await page.evaluate(([axis, value]) => (globalThis.pad.axes[axis] = value), [axis, value]);
+    await page.waitForTimeout(time);
+    await page.evaluate((axis) => (globalThis.pad.axes[axis] = 0), axis);
+    return handAtRest();
+  };
+  assert.ok(Math.hypot(...minus(await hold(0, 0.1), start)) < 1e-9, "a stick at rest");
+  for (const [axis, way, others] of [[0, right, [up, deep]], [1, scaled(deep, -1), [right, up]]]) {
+    const from = await handAtRest(), by = minus(await hold(axis, 1), from);
+    assert.ok(dot(by, way) > 4e-3 && others.every((other) => Math.abs(dot(by, other)) < 1e-5), `stick ${axis}: ${by}`);
+    await hold(axis, -1);
+  }
+  for (const [axis, part] of [[2, 2], [3, 1]]) {
+    const [w, ...from] = studio.hand().orientation;
+    await hold(axis, axis === 2 ? 1 : -1);
+    const [W, ...to] = studio.hand().orientation, cross = [from[1] * to[2] - from[2] * to[1], from[2] * to[0] - from[0] * to[2], from[0] * to[1] - from[1] * to[0]];
+    const turn = to.map((x, i) => w * x - W * from[i] - cross[i]); // about the axes of the tool
+    assert.ok(turn[part - 1] > 0.05 && turn.every((x, i) => i === part - 1 || Math.abs(x) < 1e-6), `stick ${axis}: ${turn}`);
+    await hold(axis, axis === 2 ? -1 : 1);
+  }
   await page.evaluate(() => (globalThis.pad.buttons[7].value = 1));
   await page.waitForFunction(() => Number.parseFloat(document.querySelector(".force-bar output").textContent) > 0.1);
   await page.evaluate(() => (globalThis.pad.buttons[7].value = 0, globalThis.pad.buttons[6].value = 1));
@@ -417,8 +493,7 @@ test("a recording is there up to the moment when the program was killed", async 
   await page.locator("aside input").first().fill("killed.ctpm");
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".view.running");
-  const box = await page.locator(".view canvas").boundingBox();
-  const middle = { x: box.x + box.width / 2, y: box.y + 60 };
+  const middle = await takeUp(page);
   await drag(middle, { x: 0, y: 150 }, 60);
   await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 2.5);
   const complaints = studio.complaints.length;

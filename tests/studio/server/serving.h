@@ -176,6 +176,9 @@ class SocketClient {
     return {socket_.got_text(), boost::beast::buffers_to_string(buffer.data())};
   }
 
+  /// Whether a message, or a part of one, has come.
+  bool has_news() { return boost::beast::get_lowest_layer(socket_).socket().available() > 0; }
+
   /// Calls, and returns the whole answer. Binary messages on the way go to `binary`.
   nlohmann::json call(const std::string& name, const nlohmann::json& parameters,
                       std::vector<std::string>* binary = nullptr) {

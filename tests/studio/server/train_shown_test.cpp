@@ -1,0 +1,196 @@
+// What a client that leads a session sees of it, and feels.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <thread>
+#include <utility>
+
+#include "tests/studio/devices/igtl_client.h"
+#include "tests/studio/server/serving.h"
+#include "tests/studio/server/training.h"
+
+namespace ctpm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::event_of;
+using testing::press;
+using testing::Serving;
+using testing::SocketClient;
+using testing::TrainingTest;
+using testing::value_at;
+
+/// What comes for a page in a training: of each frame the triangles that came before it, without their number, or
+/// nothing, and the elements severed by then.
+struct ShownFrame {
+  std::string triangles;
+  std::uint32_t severed = 0;
+};
+class ShownFrames {
+ public:
+  explicit ShownFrames(SocketClient& client) : client_(client) {}
+  /// Takes what has come.
+  void read() {
+    while (client_.has_news()) take();
+  }
+  std::vector<ShownFrame> until_end() {
+    while (!has_ended_) take();
+    return std::move(frames_);
+  }
+
+ private:
+  void take() {
+    const auto message = client_.receive();
+    if (message.is_text) {
+      has_ended_ = has_ended_ || nlohmann::json::parse(message.bytes).value("event", "") == "train_ended";
+      return;
+    }
+    const std::uint32_t kind = value_at<std::uint32_t>(message.bytes, 0);
+    if (kind == 1) next_.triangles = message.bytes.substr(12);
+    if (kind != 2) return;
+    next_.severed = value_at<std::uint32_t>(message.bytes, 92);
+    frames_.push_back(std::exchange(next_, {}));
+  }
+
+  SocketClient& client_;
+  ShownFrame next_;
+  std::vector<ShownFrame> frames_;
+  bool has_ended_ = false;
+};
+
+TEST_F(TrainingTest, TrianglesComeAtItsBeginningAndThenOnlyWhenACutChangedThem) {
+  fs::copy(fs::path(CTPM_SHIPPED_SESSIONS) / "kidney-cut-expert.ctpm", folder_.path() / "expert.ctpm");
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const auto train = [&](const auto& lead) {
+    const nlohmann::json begun = client.call("train.begin", {{"scene", "kidney.json"}, {"stage", 2}});
+    EXPECT_TRUE(begun.contains("result")) << begun;
+    ShownFrames frames(client);
+    lead(begun["result"]["view"], frames);
+    client.send({{"id", 99}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
+    return frames.until_end();
+  };
+  // A press moves every vertex, and changes no triangle.
+  const std::vector<ShownFrame> pressed =
+      train([&](const nlohmann::json& view, ShownFrames&) { press(client, view, 150, 1); });
+  ASSERT_GT(pressed.size(), 20u);
+  // Those of the beginning may come before the answer.
+  EXPECT_LE(std::count_if(pressed.begin(), pressed.end(), [](const ShownFrame& f) { return !f.triangles.empty(); }), 1);
+  // The expert's cut, led once more.
+  const nlohmann::json motion = client.call("session.motion", {{"path", "expert.ctpm"}, {"rate_hz", 125}})["result"];
+  const std::vector<ShownFrame> cut = train([&](const nlohmann::json&, ShownFrames& frames) {
+    const auto begin = std::chrono::steady_clock::now();
+    double time = 0;
+    for (const nlohmann::json& pose : motion["poses"]) {
+      if (pose[0].get<int>() < 0) continue;
+      time += motion["interval_s"].get<double>();
+      std::this_thread::sleep_until(begin + std::chrono::duration<double>(time));
+      client.send({{"hand",
+                    {{"position", {pose[1], pose[2], pose[3]}},
+                     {"orientation", {pose[4], pose[5], pose[6], pose[7]}},
+                     {"buttons", 1 << pose[0].get<int>()},
+                     {"time_s", 100 + time}}}});
+      frames.read();
+    }
+    std::this_thread::sleep_until(begin + std::chrono::duration<double>(time + 0.5));  // it rests
+    frames.read();
+  });
+  int came = 0, before = 0, alike = 0, severed_last = 0, resting = 0;
+  std::string triangles;
+  for (const ShownFrame& frame : cut) {
+    before += came <= 1 && frame.triangles.empty();
+    resting = frame.triangles.empty() ? resting + 1 : 0;
+    severed_last = int(frame.severed);
+    if (frame.triangles.empty()) continue;
+    alike += frame.triangles == triangles;
+    triangles = frame.triangles, ++came;
+  }
+  std::printf("%d frames of a cut, %d of them with other triangles, %d before the first of those, %d after the last\n",
+              int(cut.size()), came, before, resting);
+  EXPECT_GT(severed_last, 10);
+  EXPECT_GT(came, 3);
+  EXPECT_EQ(alike, 0) << "nothing was cut since the triangles before";
+  EXPECT_GT(before, 10) << "until the blade is in the tissue they are those of the beginning";
+  EXPECT_GT(resting, 10) << "a blade that rests cuts nothing";
+}
+
+/// The force in each tick of a session, from its first touch on [N].
+std::vector<double> forces_of(const std::string& session, const fs::path& folder) {
+  EXPECT_EQ(testing::run_ctpm({"replay", session, "--csv", session + ".csv"}, folder).code, 0);
+  std::ifstream csv(folder / (session + ".csv"));
+  std::vector<double> forces;
+  std::string row, field;
+  for (std::getline(csv, row); std::getline(csv, row);) {
+    std::istringstream fields(row);
+    for (int i = 0; i <= 14; ++i) std::getline(fields, field, ',');
+    const double force = std::atof(field.c_str());
+    if (force > 0.005 || !forces.empty()) forces.push_back(force);
+  }
+  return forces;
+}
+
+TEST_F(TrainingTest, AHandOfThePageAndADeviceFeelTheSameOfTheSameMotion) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const nlohmann::json view = client.call("scene.show", {{"path", "kidney.json"}, {"stage", 3}})["result"]["view"];
+  const auto middle = [&](int axis) {
+    return 0.5 * (view["least"][axis].get<double>() + view["most"][axis].get<double>());
+  };
+  const double top = view["most"][2].get<double>() + 0.02;
+  // Down by 30 mm in a second, and held there for half of one.
+  const auto depth = [](double time) { return 0.015 * (1 - std::cos(3.14159265 * std::min(time, 1.0))); };
+  const auto led = [&](const auto& send) {
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < 190; ++i) {
+      std::this_thread::sleep_until(begin + std::chrono::milliseconds(8 * i));
+      send(0.008 * i);
+    }
+    client.send({{"id", 99}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
+    EXPECT_TRUE(event_of(client, "train_ended")["errors"].empty());
+  };
+  client.call("train.begin", {{"scene", "kidney.json"}, {"output", "page.ctpm"}, {"stage", 2}});
+  led([&](double time) {
+    client.send({{"hand",
+                  {{"position", {middle(0), middle(1), top - depth(time)}},
+                   {"orientation", {1, 0, 0, 0}},
+                   {"buttons", 1},
+                   {"time_s", 100 + time}}}});
+  });
+  const nlohmann::json begun =
+      client.call("train.begin", {{"scene", "kidney.json"},
+                                  {"output", "device.ctpm"},
+                                  {"stage", 2},
+                                  {"device", {{"listen_port", 0}, {"offset_m", {middle(0), middle(1), top}}}}});
+  const std::string awaited = begun["result"]["awaited"];
+  {
+    testing::IgtlPeer device(std::atoi(awaited.substr(awaited.rfind(':') + 1).c_str()));
+    led([&](double time) {
+      EXPECT_TRUE(device.send(testing::transform_bytes({0, 0, -1e3 * depth(time)}, 100 + time)));
+    });
+  }
+  const std::vector<double> page = forces_of("page.ctpm", folder_.path()),
+                            device = forces_of("device.ctpm", folder_.path());
+  const std::size_t ticks = std::min(page.size(), device.size());
+  ASSERT_GT(ticks, 700u);
+  const double most = *std::max_element(page.begin(), page.end());
+  double squares = 0, held_page = 0, held_device = 0;
+  constexpr std::size_t kHeld = 100;  // ticks
+  for (std::size_t i = 0; i < ticks; ++i) {
+    squares += (page[i] - device[i]) * (page[i] - device[i]) / double(ticks);
+    if (i + kHeld >= ticks) held_page += page[i] / kHeld, held_device += device[i] / kHeld;
+  }
+  std::printf("at most %.3f N, held %.4f and %.4f N, apart by %.4f N (root of the mean square)\n", most, held_page,
+              held_device, std::sqrt(squares));
+  EXPECT_GT(most, 0.2);
+  constexpr double kAlike = 0.01;  // of the force that is held; the same spring holds both
+  EXPECT_NEAR(held_page, held_device, kAlike * held_page);
+  constexpr double kOnTheWay = 0.05;  // of the largest: poses arrive at other ticks
+  EXPECT_LT(std::sqrt(squares), kOnTheWay * most);
+}
+
+}  // namespace
+}  // namespace ctpm
