@@ -116,7 +116,8 @@ export function Author({ connection, listing, onTry, onChanged }: {
     select("");
   };
 
-  useEffect(() => {
+  // At once with the picture: a key that follows a click belongs to what was clicked.
+  useLayoutEffect(() => {
     const press = (event: KeyboardEvent) => {
       const key = event.key.toLowerCase(), isEditing = (event.target as HTMLElement).closest(".editor") !== null;
       if (event.key === "Escape" && brushRadius !== null) setBrushRadius(null);
