@@ -55,7 +55,8 @@ Result<std::string> run_call(const std::string& name, Parameters& parameters, co
   Result<std::string> result = found->second(parameters, context);
   if (result) return result;
   Errors errors = result.errors();
-  for (Error& error : errors) error.where = context.folder.shown(error.where);
+  for (Error& error : errors)
+    for (std::string* text : {&error.where, &error.message, &error.hint}) *text = context.folder.shown(*text);
   return errors;
 }
 

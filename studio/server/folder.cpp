@@ -82,7 +82,9 @@ std::vector<FolderEntry> Folder::list(const std::string& ending) const {
 
 std::string Folder::shown(const std::string& text) const {
   const std::string begin = root_.string() + "/";
-  return text.starts_with(begin) ? text.substr(begin.size()) : text;
+  std::string shown = text;
+  for (std::size_t at = 0; (at = shown.find(begin, at)) != std::string::npos;) shown.erase(at, begin.size());
+  return shown;
 }
 
 std::string Folder::relative(const std::string& path) const {

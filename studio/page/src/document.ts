@@ -1,5 +1,5 @@
 // A scene's text while its author works on it: one history for everything that changes it, a draft until it is saved.
-import { isolateHistory, redo, redoDepth, undo, undoDepth } from "@codemirror/commands";
+import { redo, redoDepth, undo, undoDepth } from "@codemirror/commands";
 import { EditorState } from "@codemirror/state";
 import { EditorView } from "@codemirror/view";
 import { findNodeAtLocation, getLocation, type JSONPath, parseTree } from "jsonc-parser";
@@ -37,7 +37,7 @@ export class SceneDocument {
     });
     const extensions = editorOf(`The text of ${path}`, schema, [listen]);
     this.view = new EditorView({ state: EditorState.create({ doc: saved, extensions }), root, parent: root });
-    if (text !== saved) this.setText(text); // a draft can be undone
+    if (text !== saved) this.setText(text, ++this.gestures); // a draft can be undone
   }
 
   /** Reads a scene and the draft of it that this browser kept. */
@@ -90,7 +90,7 @@ export class SceneDocument {
     if (this.value === undefined) return; // what is no JSON is not changed but by hand
     this.commit();
     this.last = null;
-    this.setText(changed(this.text, values));
+    this.setText(changed(this.text, values), ++this.gestures);
   }
 
   /** As set(), for a change that goes on: each call begins with the text before the first; all until commit() are one step,
@@ -125,7 +125,7 @@ export class SceneDocument {
   async reread(): Promise<void> {
     const file = await this.connection.call<{ text: string; revision: string }>("scene.read", { path: this.path });
     this.saved = file.text, this.revision = file.revision, this.before = this.last = null, this.onDisk = "same";
-    this.setText(file.text);
+    this.setText(file.text, ++this.gestures);
     this.keepDraft();
     this.onChange();
   }
@@ -178,8 +178,8 @@ export class SceneDocument {
     scrollDOM.scrollTop = this.view.lineBlockAt(node.offset).top - scrollDOM.clientHeight / 2;
   }
 
-  /** Changes the text where it differs: as a step of its own, or as a part of a gesture. */
-  private setText(text: string, part?: number): void {
+  /** Changes the text where it differs, as a part of a gesture: parts of another one are other steps. */
+  private setText(text: string, part: number): void {
     const old = this.text;
     if (text === old) return;
     let from = 0, tail = 0;
@@ -187,7 +187,7 @@ export class SceneDocument {
     while (tail < Math.min(old.length, text.length) - from && old[old.length - 1 - tail] === text[text.length - 1 - tail]) ++tail;
     this.view.dispatch({
       changes: { from, to: old.length - tail, insert: text.slice(from, text.length - tail) },
-      annotations: part === undefined ? isolateHistory.of("full") : gesture.of(part),
+      annotations: gesture.of(part),
     });
   }
 

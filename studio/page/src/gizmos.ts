@@ -194,7 +194,8 @@ export class Gizmos {
     };
     handle.addEventListener("pointerup", end);
     handle.addEventListener("lostpointercapture", end);
-    handle.addEventListener("focus", () => this.onSelect(key));
+    // The tabulator passes without choosing: what was chosen keeps its numbers on the way to them.
+    handle.addEventListener("click", () => this.onSelect(key));
     handle.addEventListener("keydown", (event) => this.nudge(key, event));
   }
 
@@ -218,6 +219,7 @@ export class Gizmos {
     const way = ways[event.key];
     if (!item?.place || !way) return;
     event.preventDefault();
+    this.onSelect(key);
     const [right, up, back] = [new three.Vector3(), new three.Vector3(), new three.Vector3()];
     this.viewer.camera.matrixWorld.extractBasis(right, up, back);
     this.onPreview(placed(item, item.place.clone().addScaledVector(right, way[0]).addScaledVector(up, way[1]).addScaledVector(back, way[2])));

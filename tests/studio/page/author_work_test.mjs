@@ -165,8 +165,8 @@ test("200 steps of all kinds are undone and done again, each as it was", async (
     steps.push(now);
   };
   const row = (name) => page.locator(".objects li button", { has: page.locator(`span:text-is("${name}")`) });
-  const number = async (nth, value) => {
-    await page.locator("#panel .vector input").nth(nth).fill(String(value));
+  const name = async (value) => {
+    await page.locator("#panel label:has-text('name') input").fill(value);
     await page.keyboard.press("Tab");
   };
   for (let round = 0; round < 20; ++round) {
@@ -175,20 +175,21 @@ test("200 steps of all kinds are undone and done again, each as it was", async (
     const { x, y } = await centreOf(handle("probe"));
     await drag({ x, y }, { x: 20 + round, y: 5 }, 3);
     await did("drag it");
+    await name(`tip ${round}`);
+    await did("its name");
+    await handle(`tip ${round}`).focus();
     await page.keyboard.press("ArrowUp");
     await did("nudge it");
-    await number(0, 10 + round);
-    await did("a number");
-    await number(1, 12 + round);
-    await did("another");
-    await page.locator("#panel label:has-text('name') input").fill(`tip ${round}`);
-    await page.keyboard.press("Tab");
-    await did("its name");
     await button("+ this view", ".objects").click();
     await did("a camera");
-    await page.locator("#panel label:has-text('field of view') input").fill(String(30 + round));
+    await page.locator("#panel label:has-text('field of view') input").fill(String(41 + round));
     await page.keyboard.press("Tab");
     await did("its angle");
+    await page.locator("#panel .vector input").first().fill(String(100 + round));
+    await page.keyboard.press("Tab");
+    await did("a number of its place");
+    await name(`view ${round}`);
+    await did("its name");
     await page.locator(".remove").click();
     await did("remove it");
     await row(`tip ${round}`).click();
@@ -223,6 +224,7 @@ test("import, filling, tools and anchors are worked by the keyboard alone", asyn
   copyFileSync(join(paths.source, "scenes", "organs", "kidney.obj"), mesh);
   await tabTo(page.locator(".pick input"));
   const chooser = page.waitForEvent("filechooser");
+  await page.waitForTimeout(300); // until it is listened for
   await page.keyboard.press("Enter");
   await (await chooser).setFiles(mesh);
   await page.waitForSelector("aside .field:has-text('tissue')");

@@ -109,6 +109,7 @@ TEST_F(AuthorTest, ErrorsOfATextAreThoseOfCheck) {
     EXPECT_NE(place, where) << answer;
     EXPECT_NE(printed.err.find("other.json" + place + ": error: "), std::string::npos) << printed.err << answer;
     EXPECT_NE(printed.err.find(error["message"].get<std::string>()), std::string::npos) << printed.err;
+    EXPECT_NE(printed.err.find(error["hint"].get<std::string>()), std::string::npos) << printed.err << error;
   }
 }
 
