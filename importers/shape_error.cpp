@@ -37,12 +37,28 @@ void add_points(Vec3 a, Vec3 b, Vec3 c, double step, std::vector<Sample>& sample
   }
 }
 
-/// Points spread over the mesh, with their distances from the nearest sphere's boundary.
-std::vector<Sample> from_surface(const CheckedMesh& mesh, const Cover& cover, double radius, int threads) {
+/// Points spread evenly over the mesh: in a fine one some triangles stand for those before them, so that there are no
+/// more points than the spheres need.
+std::vector<Sample> points_of(const CheckedMesh& mesh, double step) {
   std::vector<Sample> samples;
-  for (const Triangle& t : mesh.triangle)
-    add_points(mesh.vertex[std::size_t(t[0])], mesh.vertex[std::size_t(t[1])], mesh.vertex[std::size_t(t[2])],
-               kStep * cover.lattice.spacing, samples);
+  double small = 0;  // area of triangles that have no point yet
+  for (const Triangle& t : mesh.triangle) {
+    const Vec3 a = mesh.vertex[std::size_t(t[0])], b = mesh.vertex[std::size_t(t[1])],
+               c = mesh.vertex[std::size_t(t[2])];
+    const double area = 0.5 * norm(cross(b - a, c - a));
+    if (area > step * step) {
+      add_points(a, b, c, step, samples);
+    } else if ((small += area) > step * step) {
+      samples.push_back({(a + b + c) / 3, small, 0});
+      small = 0;
+    }
+  }
+  return samples;
+}
+
+/// Points of the surface, with their distances from the nearest sphere's boundary.
+std::vector<Sample> from_surface(const CheckedMesh& mesh, const Cover& cover, double radius, int threads) {
+  std::vector<Sample> samples = points_of(mesh, kStep * cover.lattice.spacing);
   const CellLookup lookup(cover.lattice, cover.cell);
   in_pieces(samples.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n)
