@@ -13,10 +13,11 @@ export function NumberField({ label, value, unit, step, least, onInput, onDone }
   return (
     <label class="number-field">
       <span>{label}</span>
-      <input type="number" step={step} min={least} value={Number.isFinite(value) ? value : ""} aria-label={`${label} [${unit}]`}
+      <input type="number" step={step} value={Number.isFinite(value) ? value : ""} aria-label={`${label} [${unit}]`}
         onInput={(e) => {
           const number = e.currentTarget.valueAsNumber;
-          if (Number.isFinite(number)) onInput(number);
+          // Not by the input's own least: its arrow keys would count steps from there.
+          if (Number.isFinite(number) && !(number < (least ?? -Infinity))) onInput(number);
         }}
         onChange={onDone} />
     </label>
