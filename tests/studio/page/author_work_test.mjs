@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { authorOf } from "./author_page.mjs";
-import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, paths, picture, reading, seriousFindings } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, paths, picture, reading, seriousFindings, takeUp } from "./browser.mjs";
 
 let folder, studio, page;
 const kScene = "kidney.json";
@@ -321,14 +321,13 @@ test("a blade cuts when a scene is tried, and nothing is kept", async () => {
   await button("Try it").click();
   await page.waitForSelector(".view.running .force-bar");
   console.log(`author: from "Try it" to the hand ${Date.now() - started} ms`);
-  const box = await page.locator(".view canvas").boundingBox(), middle = { x: box.x + box.width / 2, y: box.y + 60 };
+  const middle = await takeUp(page);
   const go = async (from, by, steps) => {
     for (let i = 0; i <= steps; ++i) {
       await page.mouse.move(from.x + (by.x * i) / steps, from.y + (by.y * i) / steps);
       await page.waitForTimeout(12);
     }
   };
-  await page.mouse.move(middle.x, middle.y);
   await page.keyboard.press("2");
   await go(middle, { x: -20, y: 240 }, 90);
   await go({ x: middle.x - 20, y: middle.y + 240 }, { x: 180, y: 0 }, 90);
