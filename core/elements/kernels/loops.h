@@ -99,8 +99,8 @@ constexpr SolverKernels<Real> solver{apply_axial<Real>, apply_line<Real>, invert
                                      turn<Real>,        curvature<Real>,  descend<Real>};
 
 extern const Kernels kernels;
-const Kernels kernels{add_axial_forces, linearise_axial, find_kelvin, measure_line,  add_line_forces,
-                      linearise_line,   solver<float>,   solver<double>,     multiply_mass, residual_from,
-                      nearest_squared,  fastest_squared, least_of_edges,     least_of_cells};
+const Kernels kernels{add_axial_forces, linearise_axial, find_kelvin,    measure_line,  add_line_forces,
+                      linearise_line,   solver<float>,   solver<double>, multiply_mass, residual_from,
+                      nearest_squared,  fastest_squared, least_of_edges, least_of_cells};
 
 }  // namespace ctpm::elements::CTPM_KERNELS
