@@ -60,8 +60,7 @@ std::vector<double> AxialForces::parameters_of(const Run& run) const {
   };
   add_row([&](std::size_t i) { return axial.rest_length[i]; });
   add_row([&](std::size_t i) { return axial.k[i]; });
-  if (run.law == AxialLaw::two_sphere_tpm) add_row([&](std::size_t i) { return axial.kelvin_k[i]; });
-  if (run.law != AxialLaw::spring) add_row([&](std::size_t i) { return axial.damping(i); });
+  if (run.law == AxialLaw::kelvin_unit) add_row([&](std::size_t i) { return axial.damping(i); });
   return rows;
 }
 

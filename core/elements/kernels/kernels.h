@@ -37,7 +37,7 @@ struct AxialBatch {
   std::int32_t count;  ///< in [1, kBatch]
   std::int32_t place;  ///< first place
   std::int32_t a, b;   ///< ends of the first element
-  /// Offset of its rows of `count` parameters: rest length, k; then c, or kelvin_k and c.
+  /// Offset of its rows of `count` parameters: rest length, k, and c of Kelvin units.
   std::int32_t parameters;
   std::int32_t internal;  ///< first internal variable, of a batch of two-sphere TPMs
   bool adds_a, adds_b;    ///< whether ends a, b are the slab's own
