@@ -29,12 +29,11 @@ void add_corrections(MessageBytes& out, const render::CutSurface& cut) {
   out.pad();
 }
 
-/// The triangles message: corners, stain and lips of every organ's surface.
-std::string triangles_message(const std::vector<render::CutSurface>& surfaces, std::uint32_t stage,
-                              std::uint32_t topology) {
+/// What the triangles message says of the surfaces: corners, stain and lips of every organ's.
+std::string triangles_of(const std::vector<render::CutSurface>& surfaces) {
   constexpr double kStainsPerMetre = 72;  // as in videos
   MessageBytes out;
-  out.add(std::uint32_t(kTriangles)), out.add(stage), out.add(topology), out.add(std::uint32_t(surfaces.size()));
+  out.add(std::uint32_t(surfaces.size()));
   for (const render::CutSurface& cut : surfaces) {
     const Surface& surface = cut.surface();
     out.add(std::uint32_t(surface.vertex.size())), out.add(std::uint32_t(cut.outer_vertex_count()));
@@ -47,6 +46,13 @@ std::string triangles_message(const std::vector<render::CutSurface>& surfaces, s
     out.pad();
   }
   for (const render::CutSurface& cut : surfaces) add_corrections(out, cut);
+  return std::move(out.text);
+}
+
+/// What it begins with.
+std::string head_of_triangles(std::uint32_t stage, std::uint32_t topology) {
+  MessageBytes out;
+  out.add(std::uint32_t(kTriangles)), out.add(stage), out.add(topology);
   return std::move(out.text);
 }
 
@@ -81,16 +87,13 @@ std::shared_ptr<const DrawnCut> CutFollower::draw(const State& state) {
 
 void CutFollower::draw_surfaces(const State& state) {
   static std::atomic<std::uint32_t> made{0};
-  DrawnCut drawn{CutKey(state), {}, ++made, {}};
-  for (const render::CutSurface& cut : surfaces_) drawn.surfaces.push_back(cut.surface());
-  drawn.triangles = triangles_message(surfaces_, stage_, drawn.topology);
   // A cut may move what its edge goes through, which comes with each frame, and leave the triangles as they are.
-  constexpr std::size_t kBeforeNumber = 8, kBehindNumber = 12;
-  const auto same = [&](std::size_t from, std::size_t to) {
-    return drawn.triangles.compare(from, to - from, drawn_->triangles, from, to - from) == 0;
-  };
-  if (drawn_ && same(0, kBeforeNumber) && same(kBehindNumber, std::string::npos))
-    drawn.topology = drawn_->topology, drawn.triangles = drawn_->triangles;
+  const std::string triangles = triangles_of(surfaces_);
+  const std::uint32_t topology = drawn_ && drawn_->triangles == head_of_triangles(stage_, drawn_->topology) + triangles
+                                     ? drawn_->topology
+                                     : ++made;
+  DrawnCut drawn{CutKey(state), {}, topology, head_of_triangles(stage_, topology) + triangles};
+  for (const render::CutSurface& cut : surfaces_) drawn.surfaces.push_back(cut.surface());
   drawn_ = std::make_shared<const DrawnCut>(std::move(drawn));
 }
 
