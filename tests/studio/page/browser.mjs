@@ -133,6 +133,18 @@ export async function takeUp(page) {
   return at;
 }
 
+/** Puts a device, which comes to any free port, in the hand of a training that becomes `session`. Returns how a field of
+    its form is found. */
+export async function chooseDevice(page, session) {
+  const field = (label) => page.locator(`aside .field:has-text("${label}")`);
+  await page.locator("aside input").first().fill(session);
+  await field("in the hand").locator("select").selectOption("listen");
+  await field("port of this machine").locator("input").fill("0");
+  await page.click("aside summary");
+  await field("its origin").locator("input").fill("0 0 75");
+  return field;
+}
+
 /** What axe-core finds that is serious. */
 export async function seriousFindings(page) {
   await page.evaluate((await import("node:fs")).readFileSync(axe, "utf8") + ";0");

@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { networkInterfaces } from "node:os";
 import { after, before, test } from "node:test";
 import { openDevice } from "./igtl.mjs";
-import { ctpm, ctpmBeside, makeFolder, openStudio, paths, picture, takeUp } from "./browser.mjs";
+import { chooseDevice, ctpm, ctpmBeside, makeFolder, openStudio, paths, picture, takeUp } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm";
 let folder, studio, page;
@@ -236,12 +236,7 @@ test("the shown commands verify and record do what the buttons did", async () =>
   assert.deepEqual(await commands(), [verify, `ctpm compare ${kExpert} arrow.ctpm -o report`]);
 
   await page.click("button:has-text('Train again')");
-  await page.locator("aside input").first().fill("device.ctpm");
-  const field = (label) => page.locator(`aside .field:has-text("${label}")`);
-  await field("in the hand").locator("select").selectOption("listen");
-  await field("port of this machine").locator("input").fill("0");
-  await page.click("aside summary");
-  await field("its origin").locator("input").fill("0 0 75");
+  const field = await chooseDevice(page, "device.ctpm");
   await page.click(".list button:has-text('kidney'):not(:has-text('cut'))");
   await page.waitForSelector(".view.running .empty:has-text('aiting for a device on 127.0.0.1:')");
   const press = async (port) => {

@@ -4,7 +4,7 @@ import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "no
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { openDevice } from "./igtl.mjs";
-import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings, takeUp } from "./browser.mjs";
+import { chooseDevice, ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings, takeUp } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm";
 const kByMouse = join(paths.pictures, "by-mouse.ctpm"); // for another build: another_build.sh
@@ -444,12 +444,7 @@ test("a gamepad leads the tool: the trigger presses, the shoulder changes it", a
 
 test("a device leads, and the page looks on", async () => {
   await page.click("button:has-text('Train again')");
-  await page.locator("aside input").first().fill("device.ctpm");
-  const field = (label) => page.locator(`aside .field:has-text("${label}")`);
-  await field("in the hand").locator("select").selectOption("listen");
-  await field("port of this machine").locator("input").fill("0");
-  await page.click("aside summary");
-  await field("its origin").locator("input").fill("0 0 75");
+  const field = await chooseDevice(page, "device.ctpm");
   await field("tool in the hand").locator("input").fill("saw");
   assert.match(await page.locator("aside .command code").innerText(), /-o device\.ctpm --igtl-listen 0 --device-offset-mm 0 0 75 --device-tool saw$/);
   await picture(page, "train-device-form");
