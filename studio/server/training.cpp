@@ -38,14 +38,16 @@ double value_of(const recordings::SessionStatistics& statistics, std::string_vie
   return found == values.end() ? 0 : found->second;
 }
 
-/// `began`: device_clock() when the first tick began.
-std::string ended_text(const std::string& shown, const Result<session::RecordOutcome>& outcome, double began) {
+/// `tick`: its length [s]. `began`: device_clock() when the first tick began.
+std::string ended_text(const std::string& shown, const Result<session::RecordOutcome>& outcome, double tick,
+                       double began) {
   output::JsonWriter json;
   json.begin_object().member("path", std::string_view(shown)).key("errors");
   write_errors(json, outcome ? Errors{} : outcome.errors());
   if (outcome) {
     const recordings::SessionStatistics& s = outcome->statistics;
     json.member("began_s", began)
+        .member("tick_s", tick)
         .member("ticks", outcome->run.ticks)
         .member("late_ticks", outcome->run.late_ticks)
         .member("slip_s", s.slip)
@@ -166,9 +168,10 @@ void Training::tick() {
     const session::UnkeptSession unkept;
     const std::string file = request_.file.empty() ? unkept.file() : request_.file;
     const Result<session::RecordOutcome> outcome = session::record_session(*start_, *source_, file, false, options);
-    outbox_->send(ended_text(request_.file.empty() ? "" : request_.shown, outcome, began));
+    outbox_->send(ended_text(request_.file.empty() ? "" : request_.shown, outcome, start_->model.tick, began));
   } else {
-    outbox_->send(ended_text("", Error{request_.shown, "ended before the hand moved; nothing was recorded", ""}, 0));
+    outbox_->send(ended_text("", Error{request_.shown, "ended before the hand moved; nothing was recorded", ""},
+                             start_->model.tick, 0));
   }
   has_ended_ = true;
 }

@@ -172,6 +172,7 @@ export interface BegunTraining {
 export interface EndedTraining {
   path: string; // empty: nothing was kept
   errors: Problem[];
+  tick_s?: number;
   ticks?: number;
   late_ticks?: number;
   slip_s?: number;

@@ -31,11 +31,11 @@ export function bytes(count: number): string {
 }
 
 /** How long ticks took, and whether they hold their rate: what a session's p50 and p99 say. */
-export function tickRows(p50: number, p99: number, tick = 1e-3): [string, string][] {
+export function tickRows(p50: number, p99: number, tick: number): [string, string][] {
   const under = (time: number) => `under ${(1e3 * time).toFixed(2)} ms`;
   return [
     ["half of the ticks", under(p50)], ["99 of 100 ticks", under(p99)],
-    [`${Number((1e-3 / tick).toPrecision(3))} kHz`, p99 <= tick ? "holds" : `does not hold: a tick has ${1e3 * tick} ms`],
+    [`${Number((1e-3 / tick).toPrecision(3))} kHz`, p99 <= tick ? "holds" : `does not hold: a tick has ${Number((1e3 * tick).toPrecision(3))} ms`],
   ];
 }
 

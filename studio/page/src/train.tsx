@@ -406,13 +406,13 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
         {ended.ticks !== undefined && (
           <Readings rows={[
             ["recorded as", ended.path || "not recorded"],
-            ["duration", seconds(ended.ticks / 1e3, 1)],
+            ["duration", seconds(ended.ticks * (ended.tick_s ?? 1e-3), 1)],
             ["largest force", newtons(ended.max_force_n ?? 0)],
             ["largest depth", millimetres(ended.max_depth_m ?? 0, 2)],
             ["severed", `${ended.severed} elements`],
             ["late ticks", String(ended.late_ticks)],
             ["behind the clock", behind(ended.slip_s ?? 0, ended.slip_max_s ?? 0)],
-            ...tickRows(ended.tick_time_p50_s ?? 0, ended.tick_time_p99_s ?? 0),
+            ...tickRows(ended.tick_time_p50_s ?? 0, ended.tick_time_p99_s ?? 0, ended.tick_s ?? 1e-3),
             ["hand to tick p50, p99", `${(1e3 * (ended.pose_wait_p50_s ?? 0)).toFixed(1)}, ${(1e3 * (ended.pose_wait_p99_s ?? 0)).toFixed(1)} ms`],
             ["within 5 ms", `${(1e2 * (ended.poses_within_5ms ?? 0)).toFixed(1)} %`],
           ]} />

@@ -57,6 +57,23 @@ TEST_F(TrainingTest, WhatTheHandDidIsRecordedAndReplaysToTheBit) {
             std::string::npos);
 }
 
+TEST_F(TrainingTest, TheEndSaysHowLongATickOfTheSceneIs) {
+  nlohmann::json scene = nlohmann::json::parse(std::ifstream(folder_.path() / "kidney.json"));
+  scene["tick_s"] = 0.002;
+  std::ofstream(folder_.path() / "slow.json") << scene;
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const nlohmann::json begun =
+      client.call("train.begin", {{"scene", "slow.json"}, {"output", "slow.ctpm"}, {"stage", 2}});
+  ASSERT_TRUE(begun.contains("result")) << begun;
+  press(client, begun["result"]["view"], 20, 1);
+  client.send({{"id", 99}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
+  const nlohmann::json ended = event_of(client, "train_ended"), info = info_of("slow.ctpm");
+  EXPECT_EQ(ended["tick_s"], 0.002) << ended;
+  EXPECT_EQ(info["tick_s"], 0.002);
+  EXPECT_NEAR(ended["ticks"].get<double>() * ended["tick_s"].get<double>(), info["duration_s"].get<double>(), 1e-9);
+}
+
 TEST_F(TrainingTest, TwoHandsAreLedAndRecordedAndShown) {
   nlohmann::json scene = nlohmann::json::parse(std::ifstream(folder_.path() / "kidney.json"));
   scene["hands"] = 2;
