@@ -244,7 +244,7 @@ Errors VideoWriter::check(const std::string& path, int width, int height, double
   const fs::path parent = fs::path(path.ends_with('/') ? path.substr(0, path.size() - 1) : path).parent_path();
   const fs::path folder = parent.empty() ? fs::path(".") : parent;
   if (!fs::is_directory(folder, failed))
-    errors.push_back({path, "the folder " + folder.string() + " does not exist", "make it first"});
+    errors.push_back({path, "the folder " + folder.string() + " does not exist", "create it first"});
   else if (access(folder.c_str(), W_OK) != 0)
     errors.push_back({path, "the folder " + folder.string() + " cannot be written", ""});
   return errors;
