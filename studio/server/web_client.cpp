@@ -118,9 +118,13 @@ void WebClient::take_call(Parameters& message) {
       self->send(progress_of(id, done, total));
     };
     const Result<std::string> result = run_call(name, parameters, context);
-    self->send(result ? answer(id, *result) : answer(id, result.errors()));
     desk.reset();
-    asio::post(self->services_.network, [self, id] { self->calls_.erase(id); });
+    // Whoever has the answer may use the number again.
+    asio::post(self->services_.network,
+               [self, id, text = result ? answer(id, *result) : answer(id, result.errors())]() mutable {
+                 self->calls_.erase(id);
+                 self->send(std::move(text));
+               });
   });
 }
 

@@ -38,6 +38,17 @@ TEST(Protocol, ListsEveryCallOfTheProgramAndNoOther) {
         << call;
 }
 
+TEST(Protocol, TheNumberOfACallIsFreeOnceItIsAnswered) {
+  const testing::TemporaryFolder folder;
+  const Serving serving(folder.path());
+  SocketClient client(serving);
+  for (int i = 0; i < 2000; ++i) {
+    client.send({{"id", 7}, {"call", "scene.presets"}, {"params", nlohmann::json::object()}});
+    const nlohmann::json answer = nlohmann::json::parse(client.receive().bytes);
+    ASSERT_TRUE(answer.contains("result")) << i << ": " << answer;
+  }
+}
+
 TEST(Protocol, NoCallReachesAFileOutsideOfTheFolder) {
   const testing::TemporaryFolder outer;
   const fs::path folder = outer.path() / "folder";
