@@ -1,6 +1,6 @@
 // A scene's text while its author works on it: one history for everything that changes it, a draft until it is saved.
 import { redo, redoDepth, undo, undoDepth } from "@codemirror/commands";
-import { EditorState } from "@codemirror/state";
+import { EditorState, Transaction } from "@codemirror/state";
 import { EditorView } from "@codemirror/view";
 import { findNodeAtLocation, getLocation, type JSONPath, parseTree } from "jsonc-parser";
 import type { Connection } from "./connection";
@@ -172,7 +172,8 @@ export class SceneDocument {
   reveal(path: JSONPath): void {
     const root = parseTree(this.text), node = root && findNodeAtLocation(root, path);
     if (!node) return;
-    this.view.dispatch({ selection: { anchor: node.offset, head: node.offset + node.length } });
+    // It may come in the middle of a drag, which stays one step.
+    this.view.dispatch({ selection: { anchor: node.offset, head: node.offset + node.length }, annotations: Transaction.addToHistory.of(false) });
     // The text scrolls, and not the page with it: in a narrow window it is below the picture.
     const { scrollDOM } = this.view;
     scrollDOM.scrollTop = this.view.lineBlockAt(node.offset).top - scrollDOM.clientHeight / 2;
