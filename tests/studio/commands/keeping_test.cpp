@@ -111,8 +111,9 @@ TEST_F(Keeping, ASessionThatIsBeingRecordedIsNotReplaced) {
 
 TEST_F(Keeping, AFileThatIsRemovedWhileItIsRecordedIsToldAtOnceAndEndsTheSession) {
   RunningProgram program({"record", "block.json", "--script", "wait.json", "-o", "a.ctpm"}, folder_.path());
-  for (int i = 0; i < 3000 && !fs::exists(path("a.ctpm-wal")); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  // While it is being made there is no session yet whose recording could fail.
+  const TemporaryFolder other;  // the output of programs lies in their folders
+  EXPECT_TRUE(program.wait_until([&] { return run_ctpm({"info", path("a.ctpm")}, other.path()).code == 0; }));
   fs::remove(path("a.ctpm"));
   // The script would go on for a minute.
   EXPECT_NE(program.wait_for("recording fails now: the file was removed"), "");
