@@ -10,6 +10,9 @@ namespace {
 /// the tissue closes the blade's width by some percent, and not so stiff that the solve suffers.
 constexpr double kStiffness = 40;
 
+/// Faces that pass through each other farther than this are pushed apart no harder (our choice) [spacings].
+constexpr double kMostClosed = 0.5;
+
 /// Places on the flanks are not much closer than this [spacings]: closer ones would press the same spheres.
 constexpr double kApart = 0.25;
 
@@ -27,6 +30,7 @@ struct BladeWedge::Flank {
   std::size_t organ;
   const Tool& tool;
   Vec3 up, back;                ///< along the edge and across it on the flanks, unit vectors in the world
+  Vec3 edge{};                  ///< the node of the edge [m]
   Vec3 rest{};                  ///< where the tissue at rest is that is at the edge [m]
   Vec3 rest_up{}, rest_back{};  ///< moves at rest that move the place by `up` and `back`
   Vec3 normal{};                ///< of the flanks at rest, unit vector
@@ -51,7 +55,8 @@ Vec3 BladeWedge::press(const StateView& state, const cutting::CutFront& front, c
   const double in_cut = front.in_cut(flank.organ, rest);
   if (!(in_cut > 0)) return {};
   cutting::Opening opening;
-  front.openings().find(flank.organ, rest, flank.normal, opening);
+  const Vec3 point = flank.edge + behind * flank.back;
+  front.find_opening(flank.organ, rest, flank.normal, state.position, point, opening);
   if (!(opening.whole > 0)) return {};
   const Vec3 across = cross(flank.up, flank.back);
   const auto count = std::size_t(opening.count);
@@ -59,7 +64,8 @@ Vec3 BladeWedge::press(const StateView& state, const cutting::CutFront& front, c
   for (std::size_t i = 0; i < count; ++i)
     off_cut[i] = dot(across, state.position[std::size_t(opening.sphere[i])]) - opening.apart[i];
   const Carriers carriers{{opening.sphere.data(), count}, {opening.weight.data(), count}};
-  const double closed = local_thickness(flank.tool, behind) - opening.jump(off_cut);
+  const double closed =
+      std::min(local_thickness(flank.tool, behind) - opening.jump(off_cut), kMostClosed * organ.spacing);
   if (!(closed > 0)) return {};
   const double whole = kStiffness * organ.modulus / organ.spacing * share * in_cut * opening.whole * flank.width *
                        flank.height / flank.rows;
@@ -96,6 +102,7 @@ void BladeWedge::find(const StateView& state, const Tool& tool, const cutting::C
     Flank flank{std::size_t(node.organ), tool, up, behind / height};
     flank.height = height, flank.rows = std::clamp(std::floor(height / least + 0.5), 1.0, double(kRows));
     flank.along = double(n - cutting::kPointNodes) * apart, flank.apart = double(stride) * apart;
+    flank.edge = at_node(edge, n);
     flank.rest = front.rest(n) + node.place.at_rest(state.position, at_node(edge, n) - node.place.at(state.position));
     flank.rest_up = node.place.at_rest(state.position, flank.up);
     flank.rest_back = node.place.at_rest(state.position, flank.back);

@@ -90,6 +90,7 @@ void CutSurfaces::start(const State& state, std::size_t rows) {
   surface->swept = state.swept, surface->swept.resize(rows * kEdgeNodes);
   surface->swept_organ.assign(state.swept_organ.begin(),
                               state.swept_organ.begin() + std::ptrdiff_t(surface->swept.size()));
+  if (rows == cutting::swept_rows(state)) surface->axial_severed = state.axial_severed;
   if (rows > 0) around_ = Box(surface->swept[0]);
   for (std::size_t n = 0; n < surface->swept.size(); ++n) around_.add(surface->swept[n]);
   double spacing = 0;

@@ -189,9 +189,9 @@ void CutGrid::find_homes_outside() {
 }
 
 /// Puts all spheres at their homes but those that carry no tissue.
-void CutGrid::leave_out(const std::vector<Index>& spheres) {
+void CutGrid::move_strays(const std::vector<TornTissue::Tear::Stray>& strays) {
   std::vector<Index> nodes = home_;
-  for (const Index s : spheres) nodes[std::size_t(s)] = -1;
+  for (const auto& [sphere, node] : strays) nodes[std::size_t(sphere)] = node;
   if (nodes == node_of_sphere_) return;
   for (std::size_t s = 0; s < nodes.size(); ++s)
     for (const Index i : {nodes[s], node_of_sphere_[s]})
@@ -288,7 +288,7 @@ void CutGrid::sever_outside(Index node, int direction, bool may_move) {
 /// Tears the tissue where the network has come apart, and mends what is no longer torn.
 void CutGrid::tear(const State& state) {
   const TornTissue::Tear tear = torn_tissue_.find(*this, state);
-  leave_out(tear.stray);
+  move_strays(tear.stray);
   std::unordered_map<std::size_t, Vec3> wanted;
   for (const auto& [node, direction] : tear.edge)
     wanted.emplace(edge(node, direction), rest(end(node, direction)) - rest(node));

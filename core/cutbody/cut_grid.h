@@ -167,7 +167,7 @@ class CutGrid {
   void sever_edge(Index node, int direction, float along, Vec3 normal, bool may_move);
   void take_back_last_row();
   void tear(const State& state);
-  void leave_out(const std::vector<Index>& spheres);
+  void move_strays(const std::vector<TornTissue::Tear::Stray>& strays);
   void part(std::size_t edge, Vec3 normal);
   void join(std::size_t edge);
   void reset();

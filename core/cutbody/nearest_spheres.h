@@ -14,7 +14,7 @@ class NearestSpheres {
   using Index = CutGrid::Index;
 
   /// Spheres farther away than so many edges are not found.
-  static constexpr Index kMostHops = 10;
+  static constexpr Index kMostHops = 24;
 
   struct Near {
     Index sphere = -1;  ///< -1: none is near

@@ -17,16 +17,21 @@ bool is_whole(const CutGrid& grid, Index node, int direction) {
 }
 
 /// The spheres that carry the nodes of a grid, as far as they are asked for.
-class Carried {
+class Spreading {
  public:
-  Carried(const CutGrid& grid, std::vector<std::uint8_t> blocks)
-      : by(std::size_t(grid.count()), -1), grid_(grid), blocks_(std::move(blocks)) {}
+  Spreading(const CutGrid& grid, std::vector<std::uint8_t> blocks)
+      : by(std::size_t(grid.count()), -1),
+        first(std::size_t(grid.sphere_count()), -1),
+        grid_(grid),
+        blocks_(std::move(blocks)) {}
 
   bool is_asked_for(Index node) const { return node >= 0 && blocks_[std::size_t(grid_.block(node))] != 0; }
 
   /// Lets a sphere carry a node that none carries.
   void begin_at(Index node, Index sphere) {
-    if (node >= 0 && by[std::size_t(node)] < 0) by[std::size_t(node)] = sphere, front_.push_back(node);
+    if (node < 0 || by[std::size_t(node)] >= 0) return;
+    by[std::size_t(node)] = sphere, front_.push_back(node);
+    if (first[std::size_t(sphere)] < 0) first[std::size_t(sphere)] = node;
   }
 
   /// Goes on from the nodes where spheres begin, edge by edge in whole tissue, as long as nodes are carried by none.
@@ -40,7 +45,7 @@ class Carried {
         });
   }
 
-  std::vector<Index> by;  ///< of each node; -1: none
+  std::vector<Index> by, first;  ///< see TornTissue::Carried
 
  private:
   const CutGrid& grid_;
@@ -54,17 +59,16 @@ TornTissue::TornTissue(const Model& model, std::size_t organ, const cutting::Tis
     : model_(model), organ_(organ), elements_(model, depth, organ), pieces_(model) {
   pieces_.find(network_);
   whole_ = pieces_.piece();
-  network_.axial_severed.assign(model.axial.size(), 0);
+  by_rows_.assign(model.axial.size(), 0);
 }
 
 void TornTissue::sever(const cutting::Front& from, const cutting::Front& to, const cutting::NewlySwept& newly,
                        bool may_move) {
-  cutting::find_severed(model_, elements_, organ_, from, to, newly, network_.axial_severed,
-                        may_move ? by_last_ : severed_);
+  cutting::find_severed(model_, elements_, organ_, from, to, newly, by_rows_, may_move ? by_last_ : severed_);
 }
 
 void TornTissue::take_back() {
-  for (const cutting::Crossing& crossing : by_last_) network_.axial_severed[std::size_t(crossing.element)] = 0;
+  for (const cutting::Crossing& crossing : by_last_) by_rows_[std::size_t(crossing.element)] = 0;
   by_last_.clear();
 }
 
@@ -76,19 +80,25 @@ void TornTissue::reset() {
 /// Marks the blocks of a grid around the spheres that lost an element: elsewhere nothing can tear.
 std::vector<std::uint8_t> TornTissue::blocks_at_cut(const CutGrid& grid) const {
   std::vector<std::uint8_t> blocks(std::size_t(grid.block_count()), 0);
-  for (const auto* crossings : {&severed_, &by_last_})
-    for (const cutting::Crossing& crossing : *crossings)
-      for (const Index sphere :
-           {model_.axial.a[std::size_t(crossing.element)], model_.axial.b[std::size_t(crossing.element)]})
-        if (const Index home = grid.home_of_sphere(sphere - model_.organs[organ_].first); home >= 0)
-          blocks[std::size_t(grid.block(home))] = 1;
+  const OrganRange& organ = model_.organs[organ_];
+  for (std::size_t e = 0; e < network_.axial_severed.size(); ++e) {
+    if (network_.axial_severed[e] == 0) continue;
+    for (const Index sphere : {model_.axial.a[e] - organ.first, model_.axial.b[e] - organ.first})
+      if (const Index home = sphere >= 0 && sphere < organ.count ? grid.home_of_sphere(sphere) : -1; home >= 0)
+        blocks[std::size_t(grid.block(home))] = 1;
+  }
   return grid.widened(blocks);
+}
+
+void TornTissue::take_severed(const State& state) {
+  network_.axial_severed = by_rows_;
+  for (std::size_t e = 0; e < state.axial_severed.size(); ++e) network_.axial_severed[e] |= state.axial_severed[e];
 }
 
 /// For each node in tissue the sphere that is the fewest edges away in whole tissue; -1: none is, or none is asked for.
 /// A sphere outside the tissue is at the place where its elements are.
-std::vector<Index> TornTissue::nearest_spheres(const CutGrid& grid, const State& state,
-                                               const std::vector<std::uint8_t>& blocks) const {
+TornTissue::Carried TornTissue::carry(const CutGrid& grid, const State& state,
+                                      const std::vector<std::uint8_t>& blocks) const {
   const cutting::SweptBoxes boxes = cutting::boxes_of_rows(state);
   const auto node_at = [&](Vec3 place) {
     Index nearest = -1;
@@ -102,7 +112,7 @@ std::vector<Index> TornTissue::nearest_spheres(const CutGrid& grid, const State&
     return nearest;
   };
   const OrganRange& organ = model_.organs[organ_];
-  Carried carried(grid, grid.widened(blocks));
+  Spreading carried(grid, grid.widened(blocks));
   std::vector<Index> outside;
   for (Index s = 0; s < organ.count; ++s)
     if (const Index home = grid.home_of_sphere(s); carried.is_asked_for(home))
@@ -116,7 +126,7 @@ std::vector<Index> TornTissue::nearest_spheres(const CutGrid& grid, const State&
   std::stable_sort(outside.begin(), outside.end(), [&](Index a, Index b) { return off(a) < off(b); });
   for (const Index s : outside) carried.begin_at(grid.home_of_sphere(s), s);
   carried.spread();
-  return std::move(carried.by);
+  return {std::move(carried.by), std::move(carried.first)};
 }
 
 /// Over how many elements, or whole ones only, the shortest way leads from one sphere to another of the organ; none
@@ -154,9 +164,10 @@ bool TornTissue::came_apart(Index p, Index q) {
 
 TornTissue::Tear TornTissue::find(const CutGrid& grid, const State& state) {
   if (severed_.empty() && by_last_.empty()) return {};
+  take_severed(state);
   pieces_.find(network_), apart_.clear();
   const std::vector<std::uint8_t> blocks = blocks_at_cut(grid);
-  const std::vector<Index> nearest = nearest_spheres(grid, state, blocks);
+  const auto [nearest, first] = carry(grid, state, blocks);
   Tear tear;
   for (Index i = 0; i < grid.count(); ++i) {
     if (nearest[std::size_t(i)] < 0) continue;
@@ -172,7 +183,7 @@ TornTissue::Tear TornTissue::find(const CutGrid& grid, const State& state) {
   const OrganRange& organ = model_.organs[organ_];
   for (Index s = 0; s < organ.count; ++s)
     if (const Index home = grid.home_of_sphere(s); home >= 0 && !grid.is_inside(s))
-      if (came_apart(s, nearest[std::size_t(home)])) tear.stray.push_back(s);
+      if (came_apart(s, nearest[std::size_t(home)])) tear.stray.push_back({s, first[std::size_t(s)]});
   return tear;
 }
 

@@ -20,8 +20,9 @@ class CutGrid;
 
 /// Where tissue comes apart because nothing holds it: cuts may sever every element between neighbouring spheres and yet
 /// leave a bridge of tissue in which no element runs. It tears in the middle between them, unless they are still joined
-/// by a short way around it. The severed elements are those that the rows of the swept surface cross, so that the tear
-/// is a function of the rows alone.
+/// by a short way around it. The severed elements are those that the rows of the swept surface cross, and those that
+/// the State has severed: a row holds the front to some micrometres, and may have been moved since. A State without
+/// elements stands for its rows alone.
 class TornTissue {
  public:
   struct Edge {
@@ -41,24 +42,32 @@ class TornTissue {
 
   struct Tear {
     std::vector<Edge> edge;  ///< of the grid, in whole tissue, across which it is torn; ascending
+    struct Stray {
+      std::int32_t sphere, node;
+    };
     /// Spheres outside the tissue of which the nearest tissue belongs to another piece than they do, counted within the
-    /// organ: they carry none.
-    std::vector<std::int32_t> stray;
+    /// organ, and the node at which the tissue begins that they carry; -1: they carry none.
+    std::vector<Stray> stray;
   };
   /// `state`: of the swept surface.
   Tear find(const CutGrid& grid, const State& state);
 
  private:
+  void take_severed(const State& state);
   std::vector<std::uint8_t> blocks_at_cut(const CutGrid& grid) const;
-  std::vector<std::int32_t> nearest_spheres(const CutGrid& grid, const State& state,
-                                            const std::vector<std::uint8_t>& blocks) const;
+  struct Carried {
+    std::vector<std::int32_t> by;     ///< sphere that carries each node of the grid; -1: none, or it is not asked for
+    std::vector<std::int32_t> first;  ///< node at which what a sphere carries begins; -1: it carries none (organ.count)
+  };
+  Carried carry(const CutGrid& grid, const State& state, const std::vector<std::uint8_t>& blocks) const;
   std::optional<int> elements_between(std::int32_t from, std::int32_t to, int most, bool by_whole);
   bool came_apart(std::int32_t p, std::int32_t q);
 
   const Model& model_;
   std::size_t organ_;
   cutting::RestElements elements_;
-  State network_;  ///< only the severed elements
+  std::vector<std::uint8_t> by_rows_;  ///< elements that the rows sever (axial_count)
+  State network_;                      ///< only the severed elements, of the rows and of the State
   cutting::Pieces pieces_;
   std::vector<std::int32_t> whole_;  ///< the first sphere of the piece of each sphere before any cut (sphere_count)
   std::vector<cutting::Crossing> severed_, by_last_;

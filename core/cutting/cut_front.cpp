@@ -84,7 +84,13 @@ double whole_mass(const Model& model, std::size_t organ) {
 }  // namespace
 
 CutFront::CutFront(const Model& model)
-    : model_(model), map_(model), depth_(model, map_), swept_(model), elements_(model, depth_), openings_(model, map_) {
+    : model_(model),
+      map_(model),
+      depth_(model, map_),
+      swept_(model),
+      elements_(model, depth_),
+      bearing_(model, elements_),
+      openings_(model, map_) {
   CTPM_CHECK(model.organs.size() < 255, "the swept surface names organs by a byte");
   for (const OrganRange& organ : model.organs)
     reach_.push_back(0), box_.emplace_back(model.rest_position[std::size_t(organ.first)]);
@@ -143,17 +149,18 @@ void CutFront::track(std::size_t node, Vec3 from, Vec3 to, bool is_taken, State&
   double deepest = organ >= 0 ? depth_.at(std::size_t(organ), state.blade_trail[node]) : -INFINITY;
   for (std::size_t o = 0; o < box_.size(); ++o) {
     if (std::int32_t(o) == organ || !box_[o].meets(way)) continue;
-    const Vec3 rest = map_.rest_of(o, state.position, to, reach_[o]);
+    const Vec3 rest = map_.rest_of(o, state.position, to, reach_[o], &bearing_);
     const double depth = depth_.at(o, rest);
     if (depth <= deepest) continue;
     deepest = depth, organ = std::int32_t(o);
-    state.blade_trail.set(node, is_taken ? rest : map_.rest_of(o, state.position, from, reach_[o]));
+    state.blade_trail.set(node, is_taken ? rest : map_.rest_of(o, state.position, from, reach_[o], &bearing_));
   }
 }
 
 void CutFront::begin_tick(const Tool& scalpel, const BladeEdge& from, const BladeEdge& to, bool is_taken,
                           State& state) {
   last_edge_ = from;
+  bearing_.update(state);
   if (state.edge_organ.size() != kEdgeNodes || state.blade_trail.size() != kEdgeNodes)
     state.blade_trail.resize(kEdgeNodes), state.edge_organ.assign(kEdgeNodes, -1);
   if (is_taken) std::fill(state.edge_organ.begin(), state.edge_organ.end(), -1);
@@ -178,7 +185,7 @@ void CutFront::begin_tick(const Tool& scalpel, const BladeEdge& from, const Blad
 
 void CutFront::begin_substep(const State& state) {
   state_ = &state;
-  swept_.update(state);
+  swept_.update(state), bearing_.update(state);
   for (std::size_t n = 0; n < kEdgeNodes; ++n) {
     Node& node = nodes_[n];
     front_[n] = state.blade_trail[n];
@@ -186,7 +193,8 @@ void CutFront::begin_substep(const State& state) {
     node.length = node.toughness = node.flank_stress = 0;
     if (node.organ < 0) continue;
     const auto organ = std::size_t(node.organ);
-    map_.find(organ, front_[n], reach_[organ], node.place);
+    const BladeAt blade{bearing_, state.position, at_node(last_edge_, n)};
+    map_.find(organ, front_[n], reach_[organ], node.place, &blade);
     node.depth = depth_.at(organ, front_[n]);
     if (!resists_ || node.place.count == 0) continue;
     double total = 0;
@@ -288,9 +296,9 @@ CutFront::Step CutFront::draw(const Tool& scalpel, const BladeEdge& edge, const 
     if (node.organ < 0) continue;
     const auto organ = std::size_t(node.organ);
     if (node.place.count == 0) {
-      // Nothing holds a node far outside.
-      step.to[n] = map_.rest_of(organ, state.position, at_node(edge, n), reach_[organ]);
-      step.cuts[n] = true;
+      // Nothing holds a node far outside, or where the tissue fell away from the blade.
+      step.to[n] = map_.rest_of(organ, state.position, at_node(edge, n), reach_[organ], &bearing_);
+      step.cuts[n] = node.depth <= 0;
     } else {
       const Vec3 apart = at_node(edge, n) - node.place.at(state.position);
       const double distance = norm(apart);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/cutting/bearing.h"
 #include "core/cutting/cutting.h"
 #include "core/cutting/opening.h"
 #include "core/cutting/rest_map.h"
@@ -61,7 +62,12 @@ class CutFront {
   /// How far it is in a cut: 1 near the swept surface, falling to 0 up to SweptIndex::kFar from it.
   double in_cut(std::size_t organ, Vec3 rest) const;
 
-  const Openings& openings() const { return openings_; }
+  /// The opening at a place at rest of the cut in which the blade is at `point` [m]: see Openings::find().
+  void find_opening(std::size_t organ, Vec3 rest, Vec3 normal, const Vec3Array& position, Vec3 point,
+                    Opening& opening) const {
+    const BladeAt blade{bearing_, position, point};
+    openings_.find(organ, rest, normal, opening, &blade);
+  }
 
   /// Draws the front after the edge at the end of a substep. What it sweeps is added to the swept surface, and elements
   /// that it crosses are severed; they are appended to `crossings`. Returns the number of severed elements, constraints
@@ -92,6 +98,7 @@ class CutFront {
   TissueDepth depth_;
   SweptIndex swept_;
   RestElements elements_;
+  Bearing bearing_;
   Openings openings_;
   bool resists_ = false;
   std::vector<Material> material_;        ///< (sphere_count, or empty)

@@ -39,7 +39,7 @@ Openings::Openings(const Model& model, const RestMap& map) : model_(model), map_
   }
 }
 
-void Openings::find(std::size_t organ, Vec3 rest, Vec3 normal, Opening& o) const {
+void Openings::find(std::size_t organ, Vec3 rest, Vec3 normal, Opening& o, const BladeAt* blade) const {
   o.count = 0, o.whole = 0, o.total_ = {}, o.mean_ = {};
   const double spacing = map_.spacing(organ), reach = kReach * spacing;
   o.axis_[0] = any_across(normal), o.axis_[1] = cross(normal, o.axis_[0]);
@@ -49,8 +49,10 @@ void Openings::find(std::size_t organ, Vec3 rest, Vec3 normal, Opening& o) const
     const Vec3 from = model_.rest_position[std::size_t(sphere)] - rest;
     const double bump = 1 - dot(from, from) / (reach * reach), apart = dot(normal, from);
     if (!(bump > 0) || apart == 0) return;
-    const double share =
+    double share =
         model_.mass[std::size_t(sphere)] / heaviest_[organ] * std::min(1.0, std::abs(apart) / (kOnPlane * spacing));
+    if (blade != nullptr) share *= blade->share(sphere, norm(from), spacing);
+    if (!(share > 0)) return;
     const std::size_t side = apart > 0;
     o.sphere[count] = sphere, o.apart[count] = apart;
     o.kernel_[count] = share * bump * bump * bump, o.pull_[count] = share * 6 * bump * bump / (reach * reach);

@@ -50,8 +50,8 @@ class Openings {
   Openings(const Model& model, const RestMap& map);
 
   /// The opening at a place at rest [m] of an organ. `normal`: of the cut there at rest, from its first to its second
-  /// side, unit length.
-  void find(std::size_t organ, Vec3 rest, Vec3 normal, Opening& opening) const;
+  /// side, unit length. `blade`: which is there; its spheres are those that can bear it.
+  void find(std::size_t organ, Vec3 rest, Vec3 normal, Opening& opening, const BladeAt* blade = nullptr) const;
 
  private:
   const Model& model_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/cutting/lattice_frame.h"
@@ -129,7 +130,7 @@ std::pair<LatticeCell, LatticeCell> RestMap::Lattice::cells_within(Vec3 rest, do
   return {from, to};
 }
 
-void RestMap::find(std::size_t organ, Vec3 rest, double reach, Place& place) const {
+void RestMap::find(std::size_t organ, Vec3 rest, double reach, Place& place, const BladeAt* blade) const {
   place.count = 0;
   const Lattice& lattice = lattices_[organ];
   const double cells = std::min(reach / lattice.spacing, kFarthest);
@@ -141,7 +142,9 @@ void RestMap::find(std::size_t organ, Vec3 rest, double reach, Place& place) con
   lattice.for_each_within(rest, cells, [&](std::int32_t sphere) {
     if (count == Place::kMost) return;
     const Vec3 d = (model_.rest_position[std::size_t(sphere)] - rest) / reach;
-    const double value = kernel(dot(d, d)) * model_.mass[std::size_t(sphere)] / lattice.largest_mass;
+    double value = kernel(dot(d, d)) * model_.mass[std::size_t(sphere)] / lattice.largest_mass;
+    if (!(value > 0)) return;
+    if (blade != nullptr) value *= blade->share(sphere, reach * norm(d), lattice.spacing);
     if (!(value > 0)) return;
     place.sphere[count] = sphere, kernels[count] = value, apart[count] = d, ++count, total += value;
   });
@@ -170,7 +173,8 @@ void RestMap::find(std::size_t organ, Vec3 rest, double reach, Place& place) con
   }
 }
 
-Vec3 RestMap::rest_of(std::size_t organ, const Vec3Array& position, Vec3 point, double reach) const {
+Vec3 RestMap::rest_of(std::size_t organ, const Vec3Array& position, Vec3 point, double reach,
+                      const Bearing* bearing) const {
   const Lattice& lattice = lattices_[organ];
   const auto first = std::size_t(lattice.first), last = first + std::size_t(lattice.count);
   std::size_t nearest = first;
@@ -181,9 +185,10 @@ Vec3 RestMap::rest_of(std::size_t organ, const Vec3Array& position, Vec3 point, 
   }
   Vec3 rest = model_.rest_position[nearest] + (point - position[nearest]);
   constexpr int kMostSteps = 8;
+  const auto blade = bearing == nullptr ? std::nullopt : std::optional(BladeAt{*bearing, position, point});
   Place place;
   for (int step = 0; step < kMostSteps; ++step) {
-    find(organ, rest, reach, place);
+    find(organ, rest, reach, place, blade ? &*blade : nullptr);
     if (place.count == 0) break;
     Vec3 move = place.at_rest(position, point - place.at(position));
     const double length = norm(move), most = 0.5 * lattice.spacing;

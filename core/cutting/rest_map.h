@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/cutting/bearing.h"
 #include "core/model/model.h"
 #include "core/model/vec3.h"
 
@@ -37,8 +38,8 @@ class RestMap {
 
   std::size_t organ_count() const { return lattices_.size(); }
 
-  /// The spheres within `reach` [m] that carry a place at rest [m] of an organ.
-  void find(std::size_t organ, Vec3 rest, double reach, Place& place) const;
+  /// The spheres within `reach` [m] that carry a place at rest [m] of an organ; at a blade, those that can bear it.
+  void find(std::size_t organ, Vec3 rest, double reach, Place& place, const BladeAt* blade = nullptr) const;
 
   /// Calls `visit(sphere)` for the spheres within `reach` [m] of a place at rest [m] of an organ, and for some beyond
   /// it, cell by cell of the lattice.
@@ -49,8 +50,9 @@ class RestMap {
   }
 
   /// The place at rest that spheres within `reach` [m] carry to `point` when they are at `position` [m]; where no
-  /// sphere is near, the nearest one carries it.
-  Vec3 rest_of(std::size_t organ, const Vec3Array& position, Vec3 point, double reach) const;
+  /// sphere is near, the nearest one carries it. `bearing`: a blade is at `point`.
+  Vec3 rest_of(std::size_t organ, const Vec3Array& position, Vec3 point, double reach,
+               const Bearing* bearing = nullptr) const;
 
   /// Signed distance of a place at rest from the boundary of an organ's whole lattice cells, inside positive [m], up to
   /// half a spacing: the depth in an organ that has no surface.

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/model/model.h"
+#include "core/model/state.h"
+
+namespace ctpm::cutting {
+
+class RestElements;
+
+/// How much of what a blade does to a place each sphere around it can bear. A crumb that hangs on few elements, or on
+/// none, bears next to nothing: it would be flung away. And a blade reaches only what is near it, wherever that was at
+/// rest: a piece that fell away is not pulled at from afar. Without that all is 1.
+class Bearing {
+ public:
+  /// Both must outlive the Bearing.
+  Bearing(const Model& model, const RestElements& elements);
+
+  /// Follows the severed elements of `state`.
+  void update(const State& state);
+
+  /// Share of a sphere by its elements: 1 where more than a third are whole, less from there on, but never 0.
+  double share(std::int32_t sphere) const { return share_.empty() ? 1.0 : share_[std::size_t(sphere)]; }
+
+ private:
+  double share_of(std::size_t sphere) const;
+
+  const Model& model_;
+  const RestElements& elements_;
+  std::vector<std::uint8_t> severed_;  ///< that were counted last
+  std::vector<double> share_;          ///< (sphere_count); empty: all are whole
+};
+
+/// Where a blade is that does something to a place in the tissue.
+struct BladeAt {
+  const Bearing& bearing;
+  const Vec3Array& position;  ///< of the spheres [m]
+  Vec3 point;                 ///< of the blade [m]
+
+  /// Share of a sphere that is at `rest_distance` from the place at rest [m], in an organ of a spacing [m]: 1 within
+  /// twice that and a spacing, 0 beyond three times that and two spacings.
+  double share(std::int32_t sphere, double rest_distance, double spacing) const;
+};
+
+}  // namespace ctpm::cutting
