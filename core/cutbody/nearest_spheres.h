@@ -1,42 +1,61 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/cutbody/cut_grid.h"
 
 namespace ctpm::cutbody {
 
-/// For each node of a cut grid near a cut, the sphere that is the fewest edges away in whole tissue: at the rim of a
-/// wedge no sphere may be in sight, while those across the cut are near.
+/// For each node of a cut grid near a cut, spheres that are the fewest edges away in whole tissue, apart from each
+/// other: at the rim of a wedge no sphere may be in sight, while those across the cut are near; and a strip between two
+/// cuts hangs between spheres that are far from each other.
 class NearestSpheres {
  public:
   using Index = CutGrid::Index;
 
   /// Spheres farther away than so many edges are not found.
   static constexpr Index kMostHops = 24;
+  /// Of each node at most so many, each farther than kApart spacings from the others at rest.
+  static constexpr std::size_t kMost = 4;
+  static constexpr double kApart = 1.8;
 
   struct Near {
-    Index sphere = -1;  ///< -1: none is near
+    Index sphere = -1;
     Index hops = 0;
   };
 
-  /// `grid` must outlive the NearestSpheres.
-  explicit NearestSpheres(const CutGrid& grid) : grid_(grid) {}
+  /// Both must outlive the NearestSpheres.
+  NearestSpheres(const Model& model, const CutGrid& grid) : model_(model), grid_(grid) {}
 
   /// The grid has changed.
-  void forget() { near_.clear(); }
-  /// Of several spheres that are as near, any, but always the same one.
-  Near of(Index node) {
-    if (near_.empty()) find();
-    return near_[std::size_t(node)];
+  void forget();
+  /// The nearest first; of several that are as near, any, but always the same one.
+  std::span<const Near> of(Index node) {
+    if (!is_found_) find();
+    const Nears& near = near_[std::size_t(node)];
+    return {near.sphere.data(), std::size_t(near.count)};
   }
 
  private:
+  struct Nears {
+    std::array<Near, kMost> sphere;
+    Index count = 0;
+  };
+  struct Reached {
+    Index node, sphere;
+  };
   void find();
+  bool add(Reached reached, Index hops);
+  bool is_apart(Index sphere, Index other) const;
 
+  const Model& model_;
   const CutGrid& grid_;
-  std::vector<Near> near_;  ///< of each node; empty until it is asked for
+  bool is_found_ = false;
+  std::vector<Nears> near_;      ///< of each node
+  std::vector<Index> has_some_;  ///< nodes that have any
 };
 
 }  // namespace ctpm::cutbody

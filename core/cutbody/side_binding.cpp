@@ -136,7 +136,7 @@ SideBinding::SideBinding(const Model& model, const CutGrid& grid)
       whole_(model.surfaces[std::size_t(grid.organ())]),
       grid_(grid),
       joined_(grid),
-      nearest_(grid) {}
+      nearest_(model, grid) {}
 
 /// Vertices of one side differ in their places.
 std::size_t SideBinding::KeyHash::operator()(const Key& key) const {
@@ -363,18 +363,24 @@ SideBinding::Binding SideBinding::follow_any(Vec3 rest, Index piece) const {
   return follow_frames(rest, {&only, 1}, 2 * least);
 }
 
-/// Follows those spheres that are the fewest edges away from the nodes of the place that joined_ went to.
-/// Its depth is the part of the nodes to which one is near.
+/// Follows those spheres that are the fewest edges away from the nodes of the place that joined_ went to, each the less
+/// the farther it is: between two it changes evenly from one to the other. Its depth is the part of the nodes to which
+/// one is near.
 SideBinding::Binding SideBinding::follow_nearest(Vec3 rest) {
   constexpr double kFades = 4;  // edges
   SumBySphere<double> weight;
   double all = 0, found = 0;
   for (const JoinedSpheres::Weighted& n : joined_.weighted_nodes()) {
-    const NearestSpheres::Near near = nearest_.of(n.node);
+    const std::span<const NearestSpheres::Near> near = nearest_.of(n.node);
     all += n.weight;
-    if (near.sphere < 0) continue;
-    const double part = n.weight * smooth((NearestSpheres::kMostHops - near.hops) / kFades);
-    if (part > 0) weight.add(near.sphere, part), found += part;
+    if (near.empty()) continue;
+    const auto closeness = [](Index hops) { return 1.0 / (hops + 1) - 1.0 / (NearestSpheres::kMostHops + 2); };
+    double sum = 0;
+    for (const NearestSpheres::Near& s : near) sum += closeness(s.hops);
+    const double part = n.weight * smooth((NearestSpheres::kMostHops - near.front().hops) / kFades);
+    if (!(part > 0)) continue;
+    for (const NearestSpheres::Near& s : near) weight.add(s.sphere, part * closeness(s.hops) / sum);
+    found += part;
   }
   Binding binding;
   if (!(found > 0)) return binding;
