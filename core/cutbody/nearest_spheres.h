@@ -20,7 +20,7 @@ class NearestSpheres {
   static constexpr Index kMostHops = 24;
   /// Of each node at most so many, each farther than kApart spacings from the others at rest.
   static constexpr std::size_t kMost = 4;
-  static constexpr double kApart = 1.8;
+  static constexpr double kApart = 3;
 
   struct Near {
     Index sphere = -1;

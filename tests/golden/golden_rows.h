@@ -216,6 +216,15 @@ inline constexpr GoldenRow kGoldenRevision15[] = {
     {"light, sdirk2", {0xd26734d372d4df92, 0x24a6390d14dc60ab, 0x5893454633e39af3, 0x5a81ebdf3bbb1f6b}},
 };
 
+inline constexpr GoldenRow kGoldenRevision16[] = {
+    {"crumbs, auto", {0x03283a5938717dbc, 0xc765e32a43836add, 0x2ccc8f73db031fc8, 0xfa42f56e05aa4a3a}},
+    {"crumbs, sdirk2", {0xdac49de31b596afd, 0x07be4289609adc59, 0x47a2917b803875db, 0xc1c13e36d2fd9d85}},
+    {"touched plane, auto", {0x05c70d5366a0e86f, 0x8387584449065cec, 0x3dbf141e8478bdbe, 0xe1584d881b3075e0}},
+    {"touched plane, sdirk2", {0x37af568419ef2339, 0xa070be2e909e5e02, 0x5d69761500ef2a73, 0x2dad277c04a6754f}},
+    {"touched edge, auto", {0x61cbf0e6f2fb833a, 0xc360c6b0e0a5d91e, 0xfff38ec03a529734, 0x8093801b5c807fcf}},
+    {"touched edge, sdirk2", {0x9d4448529e209f43, 0x9cf078e437155cc0, 0x0ed4fb5cf05517bc, 0x11912acbc5736a47}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},   {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189},   {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
@@ -224,7 +233,7 @@ inline constexpr GoldenRevision kGoldenRevisions[] = {
     {9, kGoldenRevision9, 0xb75cb37d4faeb3c5},   {10, kGoldenRevision10, 0x6d5ddd69b485de71},
     {11, kGoldenRevision11, 0x4162fa4fa1d24cae}, {12, kGoldenRevision12, 0x1a990242ddda6fc4},
     {13, kGoldenRevision13, 0xa5637b24229bb1f2}, {14, kGoldenRevision14, 0x463cb460f23844de},
-    {15, kGoldenRevision15, 0xc7644e74b0d461e5},
+    {15, kGoldenRevision15, 0xc7644e74b0d461e5}, {16, kGoldenRevision16, 0x304838863b606220},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

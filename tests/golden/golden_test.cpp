@@ -44,6 +44,8 @@ constexpr Session kFullSessions[] = {
     {"full, sdirk2", network::Structure::ctpm, Integrator::sdirk2},
     {"wedge, auto", network::Structure::ctpm, std::nullopt, testing::wedge_inputs},
     {"wedge, sdirk2", network::Structure::ctpm, Integrator::sdirk2, testing::wedge_inputs},
+    {"crumbs, auto", network::Structure::ctpm, std::nullopt, testing::crumbs_inputs},
+    {"crumbs, sdirk2", network::Structure::ctpm, Integrator::sdirk2, testing::crumbs_inputs},
 };
 
 /// Of make_light_model().

@@ -45,6 +45,8 @@ constexpr Session kSessions[] = {
     {"two hands", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, true, 2, testing::two_hands_inputs},
     {"wedge", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, false, 1, testing::wedge_inputs, false,
      true},
+    {"crumbs", 6, 5, 5, 400, network::Structure::ctpm, std::nullopt, false, false, 1, testing::crumbs_inputs, false,
+     true},
     {"light", 6, 5, 5, 400, network::Structure::ctpm, Integrator::backward_euler, false, false, 1,
      testing::golden_inputs, true},
 };

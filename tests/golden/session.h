@@ -89,6 +89,18 @@ inline Inputs wedge_inputs(int tick) {
   return inputs;
 }
 
+/// A scalpel cuts twice along y and twice along x, so that a column of spheres between the cuts hangs on little.
+inline Inputs crumbs_inputs(int tick) {
+  constexpr double kFirst = 0.0007, kSecond = 0.0113;
+  const double along = -0.05 + 0.001 * (tick % 100), across = tick / 100 % 2 == 0 ? kFirst : kSecond;
+  Inputs inputs;
+  inputs.tool = 1, inputs.position = {along, across, 0.008};
+  if (tick >= 200) return inputs;
+  inputs.position = {across, along, 0.008};
+  inputs.world_from_tool = {0.70710678118654757, 0, 0, 0.70710678118654757};  // 90 degrees about z
+  return inputs;
+}
+
 /// Results of a golden session.
 struct GoldenRun {
   std::array<std::uint64_t, 4> hash{};  ///< of State after each quarter

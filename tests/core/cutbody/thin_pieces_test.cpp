@@ -28,6 +28,48 @@ Way at_z(double z) {
   return [=](double t) { return testing::straight_front({-0.06, along(t), z}, {0.06, along(t), z}); };
 }
 
+/// Two slits leave a strip in which no sphere is, and which goes on into the tissue at both ends. It hangs between
+/// these ends while the tissue beside it is lifted.
+TEST(ThinPieces, AStripWithoutSpheresHangsEvenlyBetweenItsEnds) {
+  const Model model = testing::block_to_cut(6, 14, 4, 0.01);
+  State state = rest_state(model);
+  constexpr double kEnd = 0.045;
+  for (const double x : {0.0015, 0.0045})
+    testing::cut_along(
+        model,
+        [=](double t) {
+          const double y = kEnd * (2 * t - 1);
+          return testing::straight_front({x, y, kBelow}, {x, y, kAbove});
+        },
+        state);
+  constexpr double kStretch = 2;
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) {
+    Vec3 p = model.rest_position[i];
+    p.y *= kStretch;
+    if (std::abs(model.rest_position[i].y) < 0.02) p.z += 0.05;
+    state.position.set(i, p);
+  }
+  const testing::DrawnCut drawn(model, state);
+  EXPECT_EQ(drawn.pieces, 1);
+  const auto in_strip = [&](std::int32_t v) {
+    const Vec3 p = drawn.surface.vertex[std::size_t(v)];
+    return p.x > 0.0016 && p.x < 0.0044 && std::abs(p.y) < 0.012;
+  };
+  double most = 0;
+  int edges = 0;
+  for (const auto& t : drawn.surface.triangle)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::int32_t a = t[i], b = t[(i + 1) % 3];
+      if (!in_strip(a) || !in_strip(b)) continue;
+      const double rest = norm(drawn.surface.vertex[std::size_t(a)] - drawn.surface.vertex[std::size_t(b)]);
+      if (rest < 0.5e-3) continue;
+      EXPECT_LT(std::abs(drawn.vertex[std::size_t(a)].z - drawn.surface.vertex[std::size_t(a)].z), 0.01);
+      most = std::max(most, norm(drawn.vertex[std::size_t(a)] - drawn.vertex[std::size_t(b)]) / rest), ++edges;
+    }
+  EXPECT_GT(edges, 20);
+  EXPECT_LT(most, 2 * kStretch);
+}
+
 /// A rotation about an oblique axis and a shift.
 Vec3 move(Vec3 p) {
   constexpr double kAngle = 0.9;

@@ -61,6 +61,27 @@ void expect_two_sides(const testing::DrawnCut& drawn, double above) {
   EXPECT_GT(with_right, 100);
 }
 
+/// A row holds the front to some micrometres, so that it may miss an element that the front has severed.
+TEST(TornTissue, ABridgeOfWhichTheStateHasSeveredTheElementsTears) {
+  const Model model = testing::block_to_cut(8, 8, 4, 0.01);
+  State state = rest_state(model);
+  testing::cut_along(model, stroke(kLeft, kHole), state);
+  testing::cut_along(model, stroke(kRight, kHole + 0.015), state);
+  for (std::size_t i = 0; i < model.sphere_count(); ++i)
+    state.position.add(i, model.rest_position[i].x < kX ? kToLeft : kToRight);
+  EXPECT_EQ(testing::DrawnCut(model, state).pieces, 1) << "elements run in the bridge";
+  int severed = 0;
+  for (std::size_t e = 0; e < model.axial.size(); ++e) {
+    const auto is_left = [&](std::int32_t sphere) { return model.rest_position[std::size_t(sphere)].x < kX; };
+    if (is_left(model.axial.a[e]) == is_left(model.axial.b[e]) || state.axial_severed[e] != 0) continue;
+    state.axial_severed[e] = 1, ++severed;
+  }
+  EXPECT_GT(severed, 0);
+  const testing::DrawnCut drawn(model, state);
+  EXPECT_EQ(drawn.pieces, 2);
+  expect_two_sides(drawn, -1);
+}
+
 TEST(TornTissue, ABridgeWithoutElementsTears) {
   const Model model = testing::block_to_cut(8, 8, 4, 0.01);
   State state = rest_state(model);
