@@ -98,6 +98,7 @@ export async function openStudio(folder, port = 0, ...more) {
     ignoreHTTPSErrors: more.includes("--behind"), // a certificate of the test's own
   });
   page.on("dialog", (dialog) => complaints.push(`dialog: ${dialog.message()}`));
+  let cameAt = Date.now(); // the newest message of the program
   let sent = null, count = 0, rested = 0; // the hand that the page sent last, of how many, and how many of them were where it is
   const apart = (a, b) => ["position", "orientation"].some((of) => a[of].some((x, i) => Math.abs(x - b[of][i]) > 1e-9));
   page.on("websocket", (socket) => socket.on("framesent", ({ payload }) => {
@@ -107,6 +108,11 @@ export async function openStudio(folder, port = 0, ...more) {
     rested = sent && !apart(hand, sent) ? rested + 1 : 0;
     sent = hand;
   }));
+  page.on("websocket", (socket) => socket.on("framereceived", () => (cameAt = Date.now())));
+  /** Waits until the program has sent nothing for that time. */
+  const quiet = async (ms = 300) => {
+    for (const began = Date.now(); Date.now() < Math.max(cameAt, began) + ms; ) await new Promise((resolve) => setTimeout(resolve, 20));
+  };
   /** Where the hand is when it has followed what leads it: it was sent eight times more, and did not move. */
   const handAtRest = async () => {
     for (const from = count, began = Date.now(); count < from + 8 || rested < 8; ) {
@@ -148,7 +154,7 @@ export async function openStudio(folder, port = 0, ...more) {
     });
     return (await answer.json()).result;
   };
-  return { page, address, complaints, close, kill, limitFiles, ended: () => (server.exitCode ?? server.signalCode ?? ended(server)), startAgain, call, hand: () => sent, handAtRest };
+  return { page, address, complaints, close, kill, limitFiles, ended: () => (server.exitCode ?? server.signalCode ?? ended(server)), startAgain, call, hand: () => sent, handAtRest, quiet };
 }
 
 /** Reads until what was read is as it should be; the last that was read. */

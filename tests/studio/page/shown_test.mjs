@@ -4,9 +4,10 @@ import { spawn } from "node:child_process";
 import { mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { networkInterfaces } from "node:os";
-import { after, before, test } from "node:test";
+import { after, before } from "node:test";
 import { openDevice } from "./igtl.mjs";
-import { chooseDevice, ctpm, ctpmBeside, makeFolder, openStudio, paths, picture, takeUp } from "./browser.mjs";
+import { chooseDevice, ctpm, ctpmBeside, makeFolder, openStudio, paths, picture, step, takeUp } from "./browser.mjs";
+import { cross, dot, length, minus, scaled, unit } from "./vectors.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm";
 let folder, studio, page;
@@ -28,14 +29,10 @@ after(async () => {
   rmSync(folder, { recursive: true });
 });
 
-test("there is no network, no display, and no program that the studio could call", (t) => {
+step("there is no network, no display, and no program that the studio could call", (t) => {
   if (!process.env.CTPM_HAS_NO_NETWORK) return t.skip("this machine does not let its user take the network away");
   assert.deepEqual(Object.keys(networkInterfaces()), ["lo"]);
 });
-
-const minus = (a, b) => a.map((x, i) => x - b[i]), dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const length = (a) => Math.hypot(...a), scaled = (a, by) => a.map((x) => x * by), unit = (a) => scaled(a, 1 / length(a));
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
 /** Places in a picture whose colour is as asked: a script of red, green, blue. */
 function placesOf(bytes, isSuch) {
@@ -67,7 +64,7 @@ async function scrubTo(time) {
   await page.waitForFunction((text) => document.querySelector(".clock").textContent.startsWith(text), time.toFixed(3));
 }
 
-test("the numbers beside the curves are the table's: force, speed, and the difference", async () => {
+step("the numbers beside the curves are the table's: force, speed, and the difference", async () => {
   await page.click("header nav button:has-text('Review')");
   await page.click(".list button:has-text('kidney-cut-expert')");
   await page.waitForSelector(".uplot");
@@ -96,7 +93,7 @@ test("the numbers beside the curves are the table's: force, speed, and the diffe
   await picture(page, "shown-curves");
 });
 
-test("compare and verify say how far they are, in numbers, and can be cancelled", async () => {
+step("compare and verify say how far they are, in numbers, and can be cancelled", async () => {
   await page.evaluate(() => {
     globalThis.said = new Set();
     new MutationObserver(() => globalThis.said.add(document.querySelector(".working")?.textContent ?? "")).observe(document.body, { subtree: true, childList: true, characterData: true });
@@ -120,7 +117,7 @@ test("compare and verify say how far they are, in numbers, and can be cancelled"
   await page.waitForSelector(".captions:has-text('expert')");
 });
 
-test("playing at 1 x is real time", async () => {
+step("playing at 1 x is real time", async () => {
   await page.locator(".view > canvas").focus();
   await page.keyboard.press("Home");
   await quiet();
@@ -142,7 +139,7 @@ test("playing at 1 x is real time", async () => {
   assert.ok(Math.abs(rate - 1) < 0.06, `${rate}`);
 });
 
-test("the surface that the page draws covers what the exported picture of the same moment shows", async () => {
+step("the surface that the page draws covers what the exported picture of the same moment shows", async () => {
   await scrubTo(2.6);
   await quiet();
   await page.waitForTimeout(900); // the finer picture that stands still
@@ -180,7 +177,7 @@ test("the surface that the page draws covers what the exported picture of the sa
   assert.ok(overlap > 0.96, `${overlap}`);
 });
 
-test("the arrow is as long as the force, and points as it does", async () => {
+step("the arrow is as long as the force, and points as it does", async () => {
   await page.click("header nav button:has-text('Train')");
   await page.locator("aside input").first().fill("arrow.ctpm");
   await page.click(".list button:has-text('kidney'):not(:has-text('cut'))");
@@ -220,7 +217,7 @@ test("the arrow is as long as the force, and points as it does", async () => {
   assert.ok(off < Math.sin((8 * Math.PI) / 180), `${(Math.asin(off) * 180) / Math.PI} degrees`);
 });
 
-test("the shown commands verify and record do what the buttons did", async () => {
+step("the shown commands verify and record do what the buttons did", async () => {
   await page.keyboard.press("Escape");
   await page.waitForSelector("button:has-text('Train again')");
   const commands = () => page.locator("aside .command code").allInnerTexts();
@@ -276,4 +273,4 @@ test("the shown commands verify and record do what the buttons did", async () =>
   await field("in the hand").locator("select").selectOption("");
 });
 
-test("nothing was complained about", () => assert.deepEqual(studio.complaints, []));
+step("nothing was complained about", () => assert.deepEqual(studio.complaints, []));
