@@ -40,10 +40,12 @@ export class Brush {
     if (stage === this.stage) return;
     this.cursor.removeFromParent();
     stage?.scene.add(this.cursor);
-    if ((stage === null) !== (this.stage === null)) this.listen(stage !== null);
+    if ((stage === null) !== (this.stage === null)) {
+      this.listen(stage !== null);
+      this.pointer = null; // a scene that was filled again leaves the brush where it is
+    }
     this.stage = stage;
     this.cursor.visible = false;
-    this.pointer = null;
     this.viewer.draw();
   }
 
@@ -108,12 +110,12 @@ export class Brush {
     const way = kKeyWays[event.key];
     if ((!way && event.key !== " ") || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
+    if (way) this.onNothing("");
     if (!this.point()) this.pointer = this.middle();
     else if (way) {
       const before = this.pointer!;
       this.pointer = { x: before.x + kKeyStep * way[0], y: before.y + kKeyStep * way[1] };
       if (!this.point()) this.pointer = before; // the brush stays on the surface
-      this.onNothing("");
     }
     const hit = this.point();
     if (!hit || way) return;

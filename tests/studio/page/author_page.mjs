@@ -13,9 +13,9 @@ export function authorOf(page, folder, own) {
   const scene = async () => JSON.parse(await text());
   const button = (name, within = ".author") => page().locator(`${within} button:text-is("${name}")`);
   const handle = (name) => page().locator(`.handle:has(span:text-is("${name}"))`);
+  const drawn = () => page().evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
   /** Waits until the scene is shown as its text says, and its errors are known. */
   async function settled() {
-    const drawn = () => page().evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
     await drawn();
     await page().waitForFunction(() => document.querySelector(".verdict[aria-busy=false]") && !document.querySelector(".view .empty"));
     await drawn();
@@ -34,6 +34,7 @@ export function authorOf(page, folder, own) {
   /** Drags with the mouse, as a hand does: in steps. */
   async function drag(from, by, steps = 12) {
     await page().mouse.move(from.x, from.y);
+    await drawn(); // what is taken hold of is there
     await page().mouse.down();
     for (let i = 1; i <= steps; ++i) await page().mouse.move(from.x + (by.x * i) / steps, from.y + (by.y * i) / steps);
     await page().mouse.up();
@@ -51,7 +52,8 @@ export function authorOf(page, folder, own) {
   function check() {
     elsewhere ??= mkdtempSync(join(tmpdir(), "ctpm-saved-"));
     const copy = `${checks.length}.json`;
-    for (const [from, to] of [[own, copy], ...JSON.parse(onDisk()).organs.map(({ mesh }) => [mesh, mesh])]) cpSync(join(folder(), from), join(elsewhere, to));
+    cpSync(join(folder(), own), join(elsewhere, copy));
+    for (const { mesh } of JSON.parse(onDisk()).organs) cpSync(join(folder(), mesh), join(elsewhere, mesh), { force: false });
     checks.push((checks.at(-1) ?? Promise.resolve()).then(() => ctpmBeside(elsewhere, "check", copy)));
   }
   /** Every scene that was saved is one that the program takes. */

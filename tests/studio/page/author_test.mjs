@@ -192,10 +192,13 @@ step("saving is by key, and never over somebody else's change", async () => {
   await page.keyboard.press("Control+s");
   await untilSaved();
   assert.equal(onDisk(), changed);
+  await settled();
+  assert.equal(await page.locator(".verdict").textContent(), "good, saved");
   // Somebody else's change is noticed before anything is saved, while the page is only looked at.
   writeFileSync(join(folder, kScene), changed + "\n");
   await page.waitForSelector(".conflict:has-text('was changed on the disk')");
   await picture(page, "author-changed-on-disk");
+  assert.equal(await page.locator(".verdict").textContent(), "good", "not that it is saved");
   await button("Load it").click();
   await page.waitForSelector(".conflict", { state: "detached" });
   assert.equal(await text(), changed + "\n");

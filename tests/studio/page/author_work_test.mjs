@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
-import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, paths, picture, reading, seriousFindings, step, takeUp } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, moveMouse, openStudio, outOfReach, paths, picture, reading, seriousFindings, step, takeUp } from "./browser.mjs";
 
 let folder, studio, page;
 const kScene = "kidney.json";
@@ -157,6 +157,7 @@ step("changes of one value within half a second are one step", async () => {
 });
 
 step("200 steps of all kinds are undone and done again, each as it was", async () => {
+  await page.setViewportSize({ width: 1000, height: 560 }); // fewer pixels are drawn for each
   await page.click("#tab-place");
   const before = await text(), steps = [before];
   const did = async (what) => {
@@ -205,7 +206,11 @@ step("200 steps of all kinds are undone and done again, each as it was", async (
   assert.ok(!(await button("Undo").isEnabled()) || (await text()) === before);
   for (let i = 1; i <= 200; ++i) await page.keyboard.press("Control+Shift+z");
   assert.equal(await text(), steps[200]);
-  await undoAll();
+  await page.evaluate((key) => localStorage.removeItem(key), `ctpm.draft:${kScene}`);
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await page.reload();
+  await openScene();
+  assert.equal(await text(), before);
 });
 
 /** Goes to a control by the tabulator alone. */
@@ -277,8 +282,16 @@ step("import, filling, tools and anchors are worked by the keyboard alone", asyn
   await page.keyboard.press("Enter");
   assert.match(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), /^Painting anchors: arrow keys/);
   await page.keyboard.press("Space");
+  const once = await anchors();
+  assert.equal(once.length, had + 1);
+  assert.equal(await page.locator(".brush-says").count(), 0);
   await page.keyboard.press("Space");
-  for (let i = 0; i < 8; ++i) await page.keyboard.press("ArrowRight");
+  await page.waitForSelector(".brush-says:has-text('an anchor already')");
+  assert.deepEqual(await anchors(), once, "a place is not painted twice");
+  await picture(page, "author-painted-twice");
+  await page.keyboard.press("ArrowRight");
+  await page.waitForSelector(".brush-says", { state: "detached" });
+  for (let i = 0; i < 7; ++i) await page.keyboard.press("ArrowRight");
   await page.keyboard.press("Space");
   const painted = (await anchors()).slice(had).map((anchor) => anchor.sphere.centre_mm);
   assert.ok(painted.length >= 2, JSON.stringify(painted));
@@ -322,15 +335,9 @@ step("a blade cuts when a scene is tried, and nothing is kept", async () => {
   await page.waitForSelector(".view.running .force-bar");
   console.log(`author: from "Try it" to the hand ${Date.now() - started} ms`);
   const middle = await takeUp(page);
-  const go = async (from, by, steps) => {
-    for (let i = 0; i <= steps; ++i) {
-      await page.mouse.move(from.x + (by.x * i) / steps, from.y + (by.y * i) / steps);
-      await page.waitForTimeout(12);
-    }
-  };
   await page.keyboard.press("2");
-  await go(middle, { x: -20, y: 240 }, 90);
-  await go({ x: middle.x - 20, y: middle.y + 240 }, { x: 180, y: 0 }, 90);
+  await moveMouse(page, middle, { x: -20, y: 240 }, 45);
+  await moveMouse(page, { x: middle.x - 20, y: middle.y + 240 }, { x: 180, y: 0 }, 60);
   await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /severed[1-9]/.test(d.textContent)));
   await picture(page, "author-try-cut");
   assert.equal(await page.locator(".recorded").textContent(), "not recorded");
