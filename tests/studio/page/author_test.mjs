@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
 import { largeMesh } from "./large_mesh.mjs";
-import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings, step, takeUp } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings, step, takeUp, until } from "./browser.mjs";
 
 let folder, studio, page;
 
@@ -94,7 +94,7 @@ step("a mesh becomes a scene, as by the command, and what was repaired is listed
   await page.locator("aside label:has-text('radius') input").fill("4");
   // What a tissue is, in the program's words, follows the choice.
   const about = () => page.locator("#tissue-source").textContent();
-  assert.match(await about(), /Bao & Wu/);
+  assert.match(await until(about, (text) => text.includes("Its values")), /Bao & Wu/);
   await page.locator("aside label:has-text('tissue') select").selectOption("lung");
   assert.match(await about(), /Mariappan/);
   await page.locator("aside label:has-text('tissue') select").selectOption("kidney");

@@ -221,7 +221,8 @@ export async function outOfReach(page) {
   do await page.keyboard.press("Tab");
   while (await goesOn());
   return page.evaluate(() => [...document.querySelectorAll("button, input:not([type=radio]), select, textarea, summary, a[href], [tabindex]")]
-    .filter((control) => !control.disabled && control.checkVisibility({ visibilityProperty: true }) && !control.closest("[aria-hidden=true]") && !globalThis.reached.has(globalThis.looks(control)))
+    .filter((control) => !control.disabled && control.checkVisibility({ visibilityProperty: true }) && !control.closest("[aria-hidden=true]")
+      && !globalThis.reached.has(control) && !globalThis.reached.has(globalThis.looks(control)))
     .map((control) => control.outerHTML.slice(0, 120)));
 }
 
