@@ -34,13 +34,13 @@ step("the mouse leads one of two hands, and the other one stays", async () => {
   assert.equal(await pressed("ball"), "true");
   assert.ok(await page.locator(".transport button:has-text('scalpel')").isDisabled(), "it is in the other hand");
   const middle = await takeUp(page);
-  await moveMouse(page, middle, { x: 0, y: 150 }, 60);
+  await moveMouse(page, middle, { x: 0, y: 150 }, 40);
   await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /force, right0?\.?0*[1-9]/.test(d.textContent)));
   await page.keyboard.press("x");
   await page.waitForFunction(() => document.querySelector(".transport button[aria-pressed=true]").textContent.includes("left hand"));
   assert.equal(await pressed("scalpel"), "true");
   const held = await reading(page, "force, right");
-  await moveMouse(page, { x: middle.x, y: middle.y + 150 }, { x: -30, y: 80 }, 30);
+  await moveMouse(page, { x: middle.x, y: middle.y + 150 }, { x: -30, y: 80 }, 20);
   assert.ok((await reading(page, "force, right")) > 0.3 * held, "the ball still presses");
   await picture(page, "train-two-hands");
   assert.deepEqual(await seriousFindings(page), []);

@@ -161,7 +161,7 @@ step("scrubbing", async () => {
       return link.apply(this, of);
     };
   });
-  for (let i = 0; i < 25; ++i) {
+  for (let i = 0; i < 13; ++i) {
     const time = ((i * 7919) % 5000) / 1000;
     await page.locator(".scrub").evaluate((slider, value) => {
       slider.value = String(value);
@@ -173,8 +173,8 @@ step("scrubbing", async () => {
     replayed.push(await reading(page, "replayed after"));
   }
   const of = (list) => list.sort((a, b) => a - b);
-  console.log(`scrubbing: p50 ${of(times)[12]} ms, p95 ${times[23]} ms from release to picture, ${of(replayed)[12]} ms and ${replayed[23]} ms to the replayed one (286 spheres, software WebGL)`);
-  assert.ok(times.every((time, i) => time <= replayed[i]));
+  console.log(`scrubbing: half within ${of(times)[6]} ms, all within ${times[12]} ms from release to picture, ${of(replayed)[6]} ms and ${replayed[12]} ms to the replayed one (286 spheres, software WebGL)`);
+  assert.ok(times.every((time, i) => time <= replayed[i])); // both in the order of their lengths
   // A cut has new triangles, and the materials that the whole organ has.
   assert.ok((await page.evaluate(() => globalThis.compiled)) <= 2, "materials are not compiled again for each cut");
 });
@@ -276,6 +276,7 @@ step("views, cutaway and cameras are those of export", async () => {
 });
 
 step("it fits a desk, a large screen and a tablet", async () => {
+  await page.click("#tab-export"); // the longest panel
   for (const [width, height] of [[1280, 720], [1920, 1080], [820, 1180]]) {
     await page.setViewportSize({ width, height });
     await page.waitForTimeout(400);
