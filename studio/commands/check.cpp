@@ -40,6 +40,11 @@ bool is_good_course(const std::string& path) {
   return true;
 }
 
+/// As the page of the studio counts them: ", 2 warnings"; nothing where there are none.
+std::string counted_warnings(std::size_t count) {
+  return count == 0 ? "" : ", " + std::to_string(count) + (count == 1 ? " warning" : " warnings");
+}
+
 int run_check(const CheckArguments& arguments) {
   if (!arguments.scripts.empty() && arguments.scenes.size() > 1)
     return print_errors({{"--script", "belongs to one scene, got " + std::to_string(arguments.scenes.size()), ""}});
@@ -57,10 +62,10 @@ int run_check(const CheckArguments& arguments) {
       code = print_errors(errors);
       continue;
     }
-    print_warnings(scene->scene.warnings);
-    print_warnings(*loading::find_oddities(*scene));
-    print("%s: good, %zu spheres, %zu elements\n", path.c_str(), scene->built.model.sphere_count(),
-          scene->built.model.element_count());
+    const Errors odd = *loading::find_oddities(*scene);
+    print_warnings(scene->scene.warnings), print_warnings(odd);
+    print("%s: good, %zu spheres, %zu elements%s\n", path.c_str(), scene->built.model.sphere_count(),
+          scene->built.model.element_count(), counted_warnings(scene->scene.warnings.size() + odd.size()).c_str());
   }
   return code;
 }

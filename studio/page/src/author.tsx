@@ -12,7 +12,7 @@ import { Empty, Problems, Readings, Section, ShownCommand } from "./parts";
 import type { Listing } from "./protocol";
 import { SceneEditor } from "./scene_editor";
 import type { Shown } from "./stage_scene";
-import { command, counted } from "./text";
+import { command, verdictOf } from "./text";
 import { kTurns, Viewer } from "./viewer";
 
 const kLookOnDisk = 2000; // [ms]
@@ -49,6 +49,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
   const [selected, setSelected] = useState("");
   const [mode, setMode] = useState<GizmoMode>("move");
   const [brushRadius, setBrushRadius] = useState<number | null>(null);
+  const [brushSays, setBrushSays] = useState(""); // why the brush did nothing
   const [error, setError] = useState<Error | null>(null);
   const scene = desk?.scene ?? null, doc = scene?.doc ?? null;
 
@@ -61,6 +62,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
       hand.onCommit = () => made.doc?.commit();
     }
     brush.newest = () => made.items;
+    brush.onNothing = setBrushSays;
     gizmos.newest = (key) => made.items.find((item) => item.key === key);
     made.onChange = () => setVersion((v) => v + 1);
     setDesk({ viewer, scene: made, gizmos, brush });
@@ -188,6 +190,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
         )}
         {scene?.isLoading && !scene.shown && <Empty title={`Loading ${path}`}><p>Its organs are read and filled with spheres{scene.filled === null ? "" : `: ${Math.round(100 * scene.filled)} %`}.</p></Empty>}
         {scene?.isLoading && scene.shown && <p class="busy" role="status">{scene.fillingText}</p>}
+        {brushRadius !== null && brushSays && !scene?.isLoading && <p class="busy brush-says" role="status">{brushSays}</p>}
         {scene?.error && !doc && <Problems error={scene.error} />}
       </div>
       <div class="time">
@@ -269,8 +272,8 @@ function Toolbar({ scene, onSave, onLoad, onKeep, onTry, error }: {
           <button type="button" disabled={!doc.canUndo} title="Ctrl+Z" onClick={() => doc.undo()}>Undo</button>
           <button type="button" disabled={!doc.canRedo} title="Ctrl+Shift+Z" onClick={() => doc.redo()}>Redo</button>
         </div>
-        <span class={`verdict ${errors.length ? "bad" : "good"}`} role="status" title="What `ctpm check` says of the text as it is now; its lines are below the text">
-          {errors.length ? counted(errors.length, "error") : warnings.length ? `no error, ${counted(warnings.length, "warning")}` : "no errors"}{doc.isChanged ? ", not saved" : ", saved"}
+        <span class={`verdict ${errors.length ? "bad" : "good"}`} role="status" aria-busy={scene.isBehind} title="What `ctpm check` says of the text as it is now; its lines are below the text">
+          {verdictOf(errors.length, warnings.length)}{doc.isChanged ? ", not saved" : doc.onDisk === "same" ? ", saved" : ""}
         </span>
         <div class="buttons">
           <button type="button" disabled={!doc.isChanged} title="Ctrl+S" onClick={onSave}>Save</button>

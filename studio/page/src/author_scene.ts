@@ -73,6 +73,8 @@ export class AuthorScene {
   private schema: Schema | null = null;
   private shownPart = "";
   private wantsShow = false;
+  private isUnchecked = false; // the text, as it is now
+  private isUnshown = false; // and what it simulates
   private running: AbortController | null = null; // a load
   private measuring: AbortController | null = null;
   private timers: { check?: ReturnType<typeof setTimeout>; show?: ReturnType<typeof setTimeout> } = {};
@@ -121,6 +123,11 @@ export class AuthorScene {
     return itemsOf(this.doc?.lastValue, this.shown?.view ?? null, this.middles);
   }
 
+  /** Whether what is said and shown may still be of a text before. */
+  get isBehind(): boolean {
+    return this.isUnchecked || this.isUnshown || this.isLoading;
+  }
+
   /** What is done while the organs are filled, with its number once that is known. */
   get fillingText(): string {
     return this.filled === null ? "filling" : `filling ${Math.round(100 * this.filled)} %`;
@@ -154,14 +161,19 @@ export class AuthorScene {
     const { doc } = this;
     if (!doc) return;
     clearTimeout(this.timers.check);
+    this.isUnchecked = true;
     this.timers.check = setTimeout(() => void this.check(doc), kCheckAfter);
     if (doc.value !== undefined && simulatedPart(doc.value) !== this.shownPart) {
       // What is measured or loaded now is outdated.
       this.measuring?.abort();
       this.running?.abort();
       clearTimeout(this.timers.show);
+      this.isUnshown = true;
       this.timers.show = setTimeout(() => void this.load(), this.shown ? kShowAfter : 0);
-    } else clearTimeout(this.timers.show);
+    } else {
+      clearTimeout(this.timers.show);
+      this.isUnshown = false;
+    }
     this.onChange();
   }
 
@@ -174,6 +186,7 @@ export class AuthorScene {
     } catch (failure) {
       this.error = failure as Error;
     }
+    this.isUnchecked = false;
     this.underline();
     this.onChange();
   }
@@ -190,6 +203,7 @@ export class AuthorScene {
       return;
     }
     const { doc } = this;
+    this.isUnshown = false;
     if (!doc) return;
     const stop = (this.running = new AbortController());
     const part = simulatedPart(doc.value);

@@ -16,12 +16,14 @@ export class Brush {
   radius = 0.01; // [m]
   onPreview: (values: Values) => void = () => {};
   onCommit: () => void = () => {};
+  onNothing: (why: string) => void = () => {}; // a stroke changed nothing; empty: the brush went on
   newest: () => Item[] = () => this.items; // as the text has them now, drawn or not
   private stage: StageScene | null = null;
   private items: Item[] = []; // of the scene as it was before the stroke
   private stroke: { organ: number; place: three.Vector3 }[] = [];
   private erased = new Set<string>();
   private isDown = false;
+  private refusal = ""; // why the newest place of the stroke changed nothing
   private pointer: { x: number; y: number } | null = null; // of the mouse or the keys, in the window [px]
   private readonly cursor: three.Mesh;
 
@@ -38,10 +40,12 @@ export class Brush {
     if (stage === this.stage) return;
     this.cursor.removeFromParent();
     stage?.scene.add(this.cursor);
-    if ((stage === null) !== (this.stage === null)) this.listen(stage !== null);
+    if ((stage === null) !== (this.stage === null)) {
+      this.listen(stage !== null);
+      this.pointer = null; // a scene that was filled again leaves the brush where it is
+    }
     this.stage = stage;
     this.cursor.visible = false;
-    this.pointer = null;
     this.viewer.draw();
   }
 
@@ -67,17 +71,26 @@ export class Brush {
   private begin(): void {
     this.items = this.newest();
     this.stroke = [], this.erased.clear();
+    this.refusal = "";
+    this.onNothing("");
   }
 
   private readonly up = (): void => {
     if (!this.isDown) return;
     this.isDown = false;
-    if (this.stroke.length > 0 || this.erased.size > 0) this.onCommit();
+    this.finish();
   };
+
+  /** Ends a stroke. */
+  private finish(): void {
+    if (this.stroke.length > 0 || this.erased.size > 0) this.onCommit();
+    else this.onNothing(this.refusal);
+  }
 
   private readonly move = (event: PointerEvent): void => {
     this.pointer = { x: event.clientX, y: event.clientY };
     const hit = this.point();
+    if (!this.isDown) this.onNothing("");
     if (!hit || !this.isDown) return;
     if (event.shiftKey) this.erase(hit.place);
     else this.paint(hit.organ, hit.place);
@@ -97,6 +110,7 @@ export class Brush {
     const way = kKeyWays[event.key];
     if ((!way && event.key !== " ") || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
+    if (way) this.onNothing("");
     if (!this.point()) this.pointer = this.middle();
     else if (way) {
       const before = this.pointer!;
@@ -108,7 +122,7 @@ export class Brush {
     this.begin();
     if (event.shiftKey) this.erase(hit.place);
     else this.paint(hit.organ, hit.place);
-    if (this.stroke.length > 0 || this.erased.size > 0) this.onCommit();
+    this.finish();
   };
 
   /** Where the first organ's middle is seen, where the brush begins. */
@@ -122,7 +136,8 @@ export class Brush {
 
   private paint(organ: number, place: three.Vector3): void {
     if (this.stroke.some((ball) => ball.organ === organ && ball.place.distanceTo(place) < kApart * this.radius)) return;
-    if (!this.holdsSphere(organ, place)) return; // such an anchor is an error
+    if (this.isPainted(organ, place)) return void (this.refusal = "This place is an anchor already");
+    if (!this.holdsSphere(organ, place)) return void (this.refusal = "The brush holds no sphere here"); // such an anchor is an error
     this.stroke.push({ organ, place: place.clone() });
     const counts = new Map<number, number>();
     const values: Values = this.stroke.map((ball) => {
@@ -137,9 +152,16 @@ export class Brush {
     const before = this.erased.size;
     for (const item of this.items)
       if (item.shape === "sphere" && item.place && item.place.distanceTo(place) < Math.max(this.radius, item.size.x)) this.erased.add(item.key);
-    if (this.erased.size === before) return;
+    if (this.erased.size === before) return void (this.refusal = "There is no painted anchor here");
     const gone = this.items.filter((item) => this.erased.has(item.key)).reverse(); // the last of a list first
     this.onPreview(gone.map((item) => [item.path, undefined]));
+  }
+
+  /** Whether that very anchor was there before the stroke: twice it would do no more than once. */
+  private isPainted(organ: number, place: three.Vector3): boolean {
+    const own = [...mmVector(place), mm(this.radius)].join();
+    return this.items.some((item) => item.kind === "anchor" && item.path[1] === organ && item.shape === "sphere" && item.place !== null
+      && [...mmVector(item.place), mm(item.size.x)].join() === own);
   }
 
   private holdsSphere(organ: number, place: three.Vector3): boolean {

@@ -2,12 +2,12 @@ import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { CallFailed, problemText } from "./protocol";
 
-/** Numbers in a column, each with its unit. */
-export function Readings({ rows }: { rows: [string, ComponentChildren][] }) {
+/** Numbers in a column, each with its unit; some say more when they are pointed at. */
+export function Readings({ rows }: { rows: [string, ComponentChildren, string?][] }) {
   return (
     <dl class="readings">
-      {rows.map(([name, value]) => (
-        <div key={name}>
+      {rows.map(([name, value, more]) => (
+        <div key={name} title={more}>
           <dt>{name}</dt>
           <dd>{value}</dd>
         </div>

@@ -17,6 +17,15 @@ export function counted(count: number, noun: string): string {
   return `${count} ${noun}${count === 1 ? "" : "s"}`;
 }
 
+export function underMs(time: number, digits: number): string {
+  return `under ${(1e3 * time).toFixed(digits)} ms`;
+}
+
+/** What `check` says of a scene with so many errors and warnings. */
+export function verdictOf(errors: number, warnings: number): string {
+  return errors ? counted(errors, "error") : warnings ? `good, ${counted(warnings, "warning")}` : "good";
+}
+
 /** How far a session fell behind real time. */
 export function behind(atEnd: number, atMost: number): string {
   return atMost > 0 ? `${seconds(atEnd)} at the end, ${seconds(atMost)} at most` : "never";
@@ -32,9 +41,8 @@ export function bytes(count: number): string {
 
 /** How long ticks took, and whether they hold their rate: what a session's p50 and p99 say. */
 export function tickRows(p50: number, p99: number, tick: number): [string, string][] {
-  const under = (time: number) => `under ${(1e3 * time).toFixed(2)} ms`;
   return [
-    ["half of the ticks", under(p50)], ["99 of 100 ticks", under(p99)],
+    ["half of the ticks", underMs(p50, 2)], ["99 of 100 ticks", underMs(p99, 2)],
     [`${Number((1e-3 / tick).toPrecision(3))} kHz`, p99 <= tick ? "holds" : `does not hold: a tick has ${Number((1e3 * tick).toPrecision(3))} ms`],
   ];
 }

@@ -5,7 +5,7 @@ import { DeviceForm } from "./device";
 import { deviceParameters, deviceWords, storedDevice, storeDevice } from "./device_choice";
 import { Empty, HeldButton, Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { type ComparisonResult, type EndedTraining, type Listing, type Motion, problemText } from "./protocol";
-import { behind, command, millimetres, newtons, seconds, tickRows } from "./text";
+import { behind, command, millimetres, newtons, seconds, tickRows, underMs } from "./text";
 import type { Place } from "./place";
 import { ForceSound } from "./sound";
 import { kGhostAhead, Trainer } from "./trainer";
@@ -15,6 +15,7 @@ import { Viewer } from "./viewer";
 const kHeld: [string, string][] = [["farther", "PageUp"], ["closer", "PageDown"], ["turn left", "q"], ["turn right", "e"], ["tip up", "w"], ["tip down", "s"]];
 
 const kNumbers = 50, kNumbersBeside = 200; // from one reading to the next; where the processor draws pictures beside them [ms]
+const kPoseWait = "From the moment when the page sent where the hand is until a tick took it";
 const kForceLimit = 10; // of a scene that has none [N]
 
 /** Moves the bar of the force with each picture: it is scaled, so that nothing is laid out anew. */
@@ -308,7 +309,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onAuth
           <>
             <Section title="Now">
               <Readings rows={[
-                ...hands.flatMap((hand, i): [string, string][] => {
+                ...hands.flatMap((hand, i): [string, string, string?][] => {
                   const of = hands.length < 2 ? "" : i === 0 ? ", right" : ", left";
                   return [
                     [`force${of}`, newtons(Math.hypot(...hand.force))],
@@ -317,7 +318,8 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onAuth
                   ];
                 }),
                 ["severed", `${frame?.severed ?? 0} elements`],
-                ["last tick, p99", `${(1e3 * (frame?.tickTime ?? 0)).toFixed(2)}, ${(1e3 * (frame?.tickP99 ?? 0)).toFixed(2)} ms`],
+                ["newest tick", `${(1e3 * (frame?.tickTime ?? 0)).toFixed(2)} ms`, "How long the program worked on it"],
+                ["99 of 100 ticks", frame?.tickP99 ? underMs(frame.tickP99, 2) : "–", "How long the program worked on the newest 500; the longest of each 100 are left out"],
                 ["late ticks", String(frame?.lateTicks ?? 0)],
                 ["behind the clock", seconds(frame?.slip ?? 0, 3)],
                 ["frames missed", String(frame?.missed ?? 0)],
@@ -413,8 +415,9 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
             ["late ticks", String(ended.late_ticks)],
             ["behind the clock", behind(ended.slip_s ?? 0, ended.slip_max_s ?? 0)],
             ...tickRows(ended.tick_time_p50_s ?? 0, ended.tick_time_p99_s ?? 0, ended.tick_s ?? 1e-3),
-            ["hand to tick p50, p99", `${(1e3 * (ended.pose_wait_p50_s ?? 0)).toFixed(1)}, ${(1e3 * (ended.pose_wait_p99_s ?? 0)).toFixed(1)} ms`],
-            ["within 5 ms", `${(1e2 * (ended.poses_within_5ms ?? 0)).toFixed(1)} %`],
+            ["half of the poses", underMs(ended.pose_wait_p50_s ?? 0, 1), kPoseWait],
+            ["99 of 100 poses", underMs(ended.pose_wait_p99_s ?? 0, 1), kPoseWait],
+            ["within 5 ms", `${(1e2 * (ended.poses_within_5ms ?? 0)).toFixed(1)} %`, kPoseWait],
           ]} />
         )}
         <button type="button" onClick={onAgain}>Train again</button>

@@ -480,12 +480,14 @@ TEST_F(ImportProgram, CheckWarnsOfWhatIsOddAndPlanOfAScriptThatMisses) {
   const std::size_t lowest = free.find("\"lowest_mm\": ", anchors);
   free.replace(lowest, free.find('}', lowest) - lowest, "\"lowest_mm\": 999");
   write("held.json", free);
+  EXPECT_EQ(run_ctpm({"check", "scene.json"}, folder_.path()).out.find("warning"), std::string::npos);
   for (const auto& [scene, warning] : {std::pair{"probe.json", "from the nearest tissue"},
                                        {"load.json", "the nearest tissue would be pulled"},
                                        {"held.json", "hold every sphere"}}) {
     const auto check = run_ctpm({"check", scene}, folder_.path());
     EXPECT_EQ(check.code, 0) << check.err;
     expect_says(check.err, {warning, std::string(scene) + ":"});
+    expect_says(check.out, {std::string(scene) + ": good, ", " elements, 1 warning\n"});
   }
   write("miss.json", R"({"format": "ctpm-script", "version": 1, "steps": [
     {"take": {"tool": "ball", "at_mm": [0, 0, 400]}}, {"wait_s": 0.05}]})");

@@ -3,13 +3,13 @@ import assert from "node:assert/strict";
 import { copyFileSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
+import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
-import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, paths, picture, reading, seriousFindings, takeUp } from "./browser.mjs";
+import { ctpm, ctpmBeside, makeFolder, moveMouse, openStudio, outOfReach, paths, picture, reading, seriousFindings, step, takeUp } from "./browser.mjs";
 
 let folder, studio, page;
 const kScene = "kidney.json";
-const { onDisk, text, scene, button, handle, settled, write, centreOf, drag, untilSaved, save } = authorOf(() => page, () => folder, kScene);
+const { onDisk, text, scene, button, handle, settled, write, centreOf, drag, untilSaved, save, taken } = authorOf(() => page, () => folder, kScene);
 
 before(async () => {
   folder = makeFolder(kScene);
@@ -56,7 +56,7 @@ async function hues(colours) {
   }, [bytes.toString("base64"), colours]);
 }
 
-test("the slider is dragged with the mouse: one step, its numbers are told, and less is lost of the shape", async () => {
+step("the slider is dragged with the mouse: one step, its numbers are told, and less is lost of the shape", async () => {
   await page.click("#tab-filling");
   const before = await text(), fill = async () => (await scene()).organs[0].fill;
   const within = async () => Number(/95 % within ([\d.]+) mm/.exec(await page.locator("#panel .shape").textContent())[1]);
@@ -89,7 +89,7 @@ test("the slider is dragged with the mouse: one step, its numbers are told, and 
   await settled();
 });
 
-test("spheres are drawn in the colours of their layers, and those that never move in blue", async () => {
+step("spheres are drawn in the colours of their layers, and those that never move in blue", async () => {
   await button("spheres").click();
   await page.waitForTimeout(300);
   const dots = await page.locator("#panel .layers i").evaluateAll((list) => list.map((dot) => getComputedStyle(dot).backgroundColor.match(/\d+/g).map(Number)));
@@ -103,7 +103,7 @@ test("spheres are drawn in the colours of their layers, and those that never mov
   assert.ok(outer > 3 * (inner - none), "the inner layer is behind the outer one");
 });
 
-test("the scatter in full is that of the command", async () => {
+step("the scatter in full is that of the command", async () => {
   await write((await text()).replace('"radius_mm": 4, "gap_mm": 4', '"radius_mm": 6, "gap_mm": 6'));
   await save();
   await settled();
@@ -119,7 +119,7 @@ test("the scatter in full is that of the command", async () => {
   await settled();
 });
 
-test("changes of one value within half a second are one step", async () => {
+step("changes of one value within half a second are one step", async () => {
   const before = await text(), place = async () => (await scene()).probes[0].at_mm;
   await button("+ probe", ".objects").click();
   const from = await place(), added = await text(), way = async () => Math.hypot(...(await place()).map((x, i) => x - from[i]));
@@ -156,7 +156,8 @@ test("changes of one value within half a second are one step", async () => {
   assert.equal(await text(), before);
 });
 
-test("200 steps of all kinds are undone and done again, each as it was", async () => {
+step("200 steps of all kinds are undone and done again, each as it was", async () => {
+  await page.setViewportSize({ width: 1000, height: 560 }); // fewer pixels are drawn for each
   await page.click("#tab-place");
   const before = await text(), steps = [before];
   const did = async (what) => {
@@ -205,7 +206,11 @@ test("200 steps of all kinds are undone and done again, each as it was", async (
   assert.ok(!(await button("Undo").isEnabled()) || (await text()) === before);
   for (let i = 1; i <= 200; ++i) await page.keyboard.press("Control+Shift+z");
   assert.equal(await text(), steps[200]);
-  await undoAll();
+  await page.evaluate((key) => localStorage.removeItem(key), `ctpm.draft:${kScene}`);
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await page.reload();
+  await openScene();
+  assert.equal(await text(), before);
 });
 
 /** Goes to a control by the tabulator alone. */
@@ -217,7 +222,7 @@ async function tabTo(locator, key = "Tab") {
   assert.fail("the tabulator does not come there");
 }
 
-test("import, filling, tools and anchors are worked by the keyboard alone", async () => {
+step("import, filling, tools and anchors are worked by the keyboard alone", async () => {
   await page.locator("header nav button:has-text('Author')").focus();
   // A mesh is chosen, named and imported.
   const elsewhere = mkdtempSync(join(tmpdir(), "ctpm-mesh-")), mesh = join(elsewhere, "typed.obj");
@@ -277,8 +282,16 @@ test("import, filling, tools and anchors are worked by the keyboard alone", asyn
   await page.keyboard.press("Enter");
   assert.match(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), /^Painting anchors: arrow keys/);
   await page.keyboard.press("Space");
+  const once = await anchors();
+  assert.equal(once.length, had + 1);
+  assert.equal(await page.locator(".brush-says").count(), 0);
   await page.keyboard.press("Space");
-  for (let i = 0; i < 8; ++i) await page.keyboard.press("ArrowRight");
+  await page.waitForSelector(".brush-says:has-text('an anchor already')");
+  assert.deepEqual(await anchors(), once, "a place is not painted twice");
+  await picture(page, "author-painted-twice");
+  await page.keyboard.press("ArrowRight");
+  await page.waitForSelector(".brush-says", { state: "detached" });
+  for (let i = 0; i < 7; ++i) await page.keyboard.press("ArrowRight");
   await page.keyboard.press("Space");
   const painted = (await anchors()).slice(had).map((anchor) => anchor.sphere.centre_mm);
   assert.ok(painted.length >= 2, JSON.stringify(painted));
@@ -298,7 +311,7 @@ test("import, filling, tools and anchors are worked by the keyboard alone", asyn
   await openScene();
 });
 
-test("a mesh that is not there is told where the text names it, as by check", async () => {
+step("a mesh that is not there is told where the text names it, as by check", async () => {
   await openScene();
   const bad = onDisk().replace("organs/kidney.obj", "organs/nowhere.obj");
   await write(bad);
@@ -315,22 +328,16 @@ test("a mesh that is not there is told where the text names it, as by check", as
   await settled();
 });
 
-test("a blade cuts when a scene is tried, and nothing is kept", async () => {
+step("a blade cuts when a scene is tried, and nothing is kept", async () => {
   const files = readdirSync(folder).sort();
   const started = Date.now();
   await button("Try it").click();
   await page.waitForSelector(".view.running .force-bar");
   console.log(`author: from "Try it" to the hand ${Date.now() - started} ms`);
   const middle = await takeUp(page);
-  const go = async (from, by, steps) => {
-    for (let i = 0; i <= steps; ++i) {
-      await page.mouse.move(from.x + (by.x * i) / steps, from.y + (by.y * i) / steps);
-      await page.waitForTimeout(12);
-    }
-  };
   await page.keyboard.press("2");
-  await go(middle, { x: -20, y: 240 }, 90);
-  await go({ x: middle.x - 20, y: middle.y + 240 }, { x: 180, y: 0 }, 90);
+  await moveMouse(page, middle, { x: -20, y: 240 }, 45);
+  await moveMouse(page, { x: middle.x - 20, y: middle.y + 240 }, { x: 180, y: 0 }, 60);
   await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /severed[1-9]/.test(d.textContent)));
   await picture(page, "author-try-cut");
   assert.equal(await page.locator(".recorded").textContent(), "not recorded");
@@ -342,7 +349,7 @@ test("a blade cuts when a scene is tried, and nothing is kept", async () => {
   await settled();
 });
 
-test("a draft is there after its tab was closed", async () => {
+step("a draft is there after its tab was closed", async () => {
   const saved = onDisk(), changed = saved.replace('"name": "kidney"', '"name": "not saved"');
   await write(changed);
   assert.equal(await text(), changed);
@@ -359,7 +366,7 @@ test("a draft is there after its tab was closed", async () => {
   assert.equal(onDisk(), saved);
 });
 
-test("a program that is killed while it writes leaves the scene whole, and nothing is lost", async () => {
+step("a program that is killed while it writes leaves the scene whole, and nothing is lost", async () => {
   const saved = onDisk(), longer = `${await text()}\n${" ".repeat(300_000)}\n`;
   await write(longer);
   studio.limitFiles(100_000); // a longer write ends the program, in the middle of it
@@ -381,3 +388,5 @@ test("a program that is killed while it writes leaves the scene whole, and nothi
   assert.equal(onDisk(), longer);
   assert.deepEqual(readdirSync(folder).filter((name) => name.includes(".part-")), []);
 });
+
+step("every scene that was saved is one that the program takes", taken);

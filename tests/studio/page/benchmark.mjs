@@ -74,7 +74,7 @@ async function lead(scene) {
   await page.waitForSelector("button:has-text('Train again')");
   const row = (name) => page.locator(`.readings div:has(dt:text-is("${name}")) dd`).innerText();
   console.log(`${scene}: ${(pictures / kSeconds).toFixed(1)} pictures a second, ${((1e3 * time) / pictures).toFixed(2)} ms of the main thread each; `
-    + `pose to tick p50, p99 ${await row("hand to tick p50, p99")}, ${await row("within 5 ms")} within 5 ms; `
+    + `pose to tick: half ${await row("half of the poses")}, 99 of 100 ${await row("99 of 100 poses")}, ${await row("within 5 ms")} within 5 ms; `
     + `tick to picture p50, p95 ${(await fromTicks()).join(", ")} ms; ${await row("late ticks")} late ticks`);
   await page.click("button:has-text('Train again')");
 }

@@ -5,6 +5,7 @@ import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { text } from "node:stream/consumers";
+import { test } from "node:test";
 
 const [program, source, packages, sessions, pictures] = process.argv.slice(2, 7).map((path) => resolve(path));
 export const paths = { program, source, packages, sessions, pictures };
@@ -16,6 +17,21 @@ const kFlags = [
   "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
   "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
 ];
+
+let broken = "";
+/** A test of a file in which each goes on where the one before left the page. After one that fails the others are not tried: they would
+    wait for what cannot come. */
+export function step(name, run) {
+  test(name, async (t) => {
+    if (broken) return t.skip(`"${broken}" failed before it`);
+    try {
+      await run(t);
+    } catch (error) {
+      broken = name;
+      throw error;
+    }
+  });
+}
 
 /** A folder with the shipped scenes and the sessions that are named. */
 export function makeFolder(...names) {
@@ -82,10 +98,29 @@ export async function openStudio(folder, port = 0, ...more) {
     ignoreHTTPSErrors: more.includes("--behind"), // a certificate of the test's own
   });
   page.on("dialog", (dialog) => complaints.push(`dialog: ${dialog.message()}`));
-  let sent = null; // the hand that the page sent last
+  let cameAt = Date.now(); // the newest message of the program
+  let sent = null, count = 0, rested = 0; // the hand that the page sent last, of how many, and how many of them were where it is
+  const apart = (a, b) => ["position", "orientation"].some((of) => a[of].some((x, i) => Math.abs(x - b[of][i]) > 1e-9));
   page.on("websocket", (socket) => socket.on("framesent", ({ payload }) => {
-    if (String(payload).startsWith('{"hand"')) sent = JSON.parse(String(payload)).hand;
+    if (!String(payload).startsWith('{"hand"')) return;
+    const { hand } = JSON.parse(String(payload));
+    ++count;
+    rested = sent && !apart(hand, sent) ? rested + 1 : 0;
+    sent = hand;
   }));
+  page.on("websocket", (socket) => socket.on("framereceived", () => (cameAt = Date.now())));
+  /** Waits until the program has sent nothing for that time. */
+  const quiet = async (ms = 300) => {
+    for (const began = Date.now(); Date.now() < Math.max(cameAt, began) + ms; ) await new Promise((resolve) => setTimeout(resolve, 20));
+  };
+  /** Where the hand is when it has followed what leads it: it was sent eight times more, and did not move. */
+  const handAtRest = async () => {
+    for (const from = count, began = Date.now(); count < from + 8 || rested < 8; ) {
+      if (Date.now() - began > 60_000) throw new Error(`the hand does not come to rest: ${count - from} sent, ${rested} the same`);
+      await new Promise((resolve) => setTimeout(resolve, 10));
+    }
+    return sent.position;
+  };
   await page.goto(address);
   await page.waitForSelector("header nav button");
   const close = async () => {
@@ -119,7 +154,23 @@ export async function openStudio(folder, port = 0, ...more) {
     });
     return (await answer.json()).result;
   };
-  return { page, address, complaints, close, kill, limitFiles, ended: () => (server.exitCode ?? server.signalCode ?? ended(server)), startAgain, call, hand: () => sent };
+  return { page, address, complaints, close, kill, limitFiles, ended: () => (server.exitCode ?? server.signalCode ?? ended(server)), startAgain, call, hand: () => sent, handAtRest, quiet };
+}
+
+/** Reads until what was read is as it should be; the last that was read. */
+export async function until(read, isRight, seconds = 20) {
+  for (const began = Date.now(); ; await new Promise((resolve) => setTimeout(resolve, 50))) {
+    const value = await read();
+    if (isRight(value) || Date.now() - began > 1e3 * seconds) return value;
+  }
+}
+
+/** Moves the mouse by steps of some pixels, as a hand does: 60 to 80 of them a second. */
+export async function moveMouse(page, from, by, steps) {
+  for (let i = 0; i <= steps; ++i) {
+    await page.mouse.move(from.x + (by.x * i) / steps, from.y + (by.y * i) / steps);
+    await page.waitForTimeout(12);
+  }
 }
 
 /** Brings the pointer to the tool of a training, which is taken up there; returns that place [px]. */
@@ -170,7 +221,8 @@ export async function outOfReach(page) {
   do await page.keyboard.press("Tab");
   while (await goesOn());
   return page.evaluate(() => [...document.querySelectorAll("button, input:not([type=radio]), select, textarea, summary, a[href], [tabindex]")]
-    .filter((control) => !control.disabled && control.checkVisibility({ visibilityProperty: true }) && !control.closest("[aria-hidden=true]") && !globalThis.reached.has(globalThis.looks(control)))
+    .filter((control) => !control.disabled && control.checkVisibility({ visibilityProperty: true }) && !control.closest("[aria-hidden=true]")
+      && !globalThis.reached.has(control) && !globalThis.reached.has(globalThis.looks(control)))
     .map((control) => control.outerHTML.slice(0, 120)));
 }
 

@@ -2,11 +2,11 @@
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, rmSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
-import { ctpm, makeFolder, openStudio, picture, reading } from "./browser.mjs";
+import { after, before } from "node:test";
+import { ctpm, ctpmBeside, makeFolder, openStudio, picture, reading, step } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kEvil = "<img src=x onerror=alert(1)>.ctpm", kEvilScene = "<b onclick=alert(2)>.json";
-let folder, studio, page;
+let folder, studio, page, verdict;
 
 before(async () => {
   folder = makeFolder("kidney.json", kExpert);
@@ -54,7 +54,7 @@ async function choose(value) {
   assert.equal(await chosen(), value);
 }
 
-test("by keys a trainee starts, presses, records, ends, verifies and compares", async () => {
+step("by keys a trainee starts, presses, records, ends, verifies and compares", async () => {
   await toButton("Train");
   await press("Enter");
   await page.waitForSelector(".room.train");
@@ -80,10 +80,10 @@ test("by keys a trainee starts, presses, records, ends, verifies and compares", 
   await picture(page, "keys-train");
   const info = JSON.parse(ctpm(folder, "info", "keys.ctpm", "--json").out);
   assert.ok(info.max_force_n > 0.1, `${info.max_force_n} N`);
-  assert.equal(ctpm(folder, "verify", "keys.ctpm").code, 0);
+  verdict = ctpmBeside(folder, "verify", "keys.ctpm");
 });
 
-test("by keys a reviewer opens, scrubs, plays, writes a note, copies a moment's link and exports", async () => {
+step("by keys a reviewer opens, scrubs, plays, writes a note, copies a moment's link and exports", async () => {
   await toButton("Review");
   await press("Enter");
   await page.waitForSelector(".room.review");
@@ -127,10 +127,11 @@ test("by keys a reviewer opens, scrubs, plays, writes a note, copies a moment's 
   await press("Enter");
   await page.waitForSelector("#panel .good:has-text('keys.avi')");
   assert.ok(existsSync(join(folder, "keys.avi")));
+  assert.equal((await verdict).code, 0, "what the trainee recorded");
   await picture(page, "keys-review");
 });
 
-test("names of files and notes are text, in all rooms", async () => {
+step("names of files and notes are text, in all rooms", async () => {
   const { copyFileSync } = await import("node:fs");
   copyFileSync(join(folder, kExpert), join(folder, kEvil));
   copyFileSync(join(folder, "kidney.json"), join(folder, kEvilScene));
@@ -165,4 +166,4 @@ test("names of files and notes are text, in all rooms", async () => {
   await nothingCame("Review");
 });
 
-test("nothing was complained about", () => assert.deepEqual(studio.complaints, []));
+step("nothing was complained about", () => assert.deepEqual(studio.complaints, []));

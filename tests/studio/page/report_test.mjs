@@ -4,7 +4,7 @@ import { readFileSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { ctpm, makeFolder, openBrowser, overflow, picture, seriousFindings } from "./browser.mjs";
+import { ctpmBeside, makeFolder, openBrowser, overflow, picture, seriousFindings } from "./browser.mjs";
 
 /** The columns of a CSV file as numbers, by name. */
 function columns(path) {
@@ -27,10 +27,13 @@ function numberOf(told, name) {
 
 test("a comparison is read at any width, and the cursor of a plot tells what was recorded", async () => {
   const folder = makeFolder("kidney-cut-expert.ctpm", "kidney-cut-clumsy.ctpm");
-  const { page, complaints, close } = await openBrowser();
+  const [compared, replayed, { page, complaints, close }] = await Promise.all([
+    ctpmBeside(folder, "compare", "kidney-cut-expert.ctpm", "kidney-cut-clumsy.ctpm", "-o", "report"),
+    ctpmBeside(folder, "replay", "kidney-cut-clumsy.ctpm", "--csv", "ticks.csv"), openBrowser(),
+  ]);
   try {
-    assert.equal(ctpm(folder, "compare", "kidney-cut-expert.ctpm", "kidney-cut-clumsy.ctpm", "-o", "report").code, 0);
-    assert.equal(ctpm(folder, "replay", "kidney-cut-clumsy.ctpm", "--csv", "ticks.csv").code, 0);
+    assert.equal(compared.code, 0, compared.err);
+    assert.equal(replayed.code, 0, replayed.err);
     const recorded = columns(join(folder, "ticks.csv"));
     const asked = [];
     page.on("request", (request) => asked.push(request.url()));

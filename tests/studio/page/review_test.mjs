@@ -1,21 +1,16 @@
 // A reviewer in a browser: review_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { existsSync, readFileSync, readdirSync, rmSync } from "node:fs";
+import { readFileSync, readdirSync, rmSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
-import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings } from "./browser.mjs";
+import { after, before } from "node:test";
+import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings, step } from "./browser.mjs";
 
-const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm";
-let folder, studio, page, expert, clumsy;
-
-/** When an event of that kind first happened [s]. */
-function firstOf(info, kind) {
-  return info.events.find((event) => event.kind === kind).tick * info.tick_s;
-}
+const kExpert = "kidney-cut-expert.ctpm";
+let folder, studio, page, expert;
 
 before(async () => {
-  folder = makeFolder(kExpert, kClumsy, "liver-press-expert.ctpm");
-  [expert, clumsy] = [kExpert, kClumsy].map((name) => JSON.parse(ctpm(folder, "info", name, "--json").out));
+  folder = makeFolder(kExpert, "liver-press-expert.ctpm");
+  expert = JSON.parse(ctpm(folder, "info", kExpert, "--json").out);
   studio = await openStudio(folder);
   page = studio.page;
   // Keeps what the program sends, for the test that spoils it.
@@ -44,14 +39,14 @@ const quiet = () => page.waitForFunction(() => /\d+ ms/.test([...document.queryS
 
 const replayedQuiet = () => page.waitForFunction(() => /\d+ ms/.test([...document.querySelectorAll(".readings div")].find((d) => d.textContent.includes("replayed after"))?.textContent ?? ""));
 
-test("the token leaves the address bar, and an empty page says what to do", async () => {
+step("the token leaves the address bar, and an empty page says what to do", async () => {
   assert.ok(!page.url().includes("token"));
   assert.match(await page.locator(".view .empty").innerText(), /Choose a session/);
   assert.deepEqual(await seriousFindings(page), []);
   await picture(page, "review-empty");
 });
 
-test("a session opens, and any moment of it is a press away", async () => {
+step("a session opens, and any moment of it is a press away", async () => {
   const command = ctpmBeside(folder, "replay", kExpert, "--csv", "replay.csv");
   await page.click(".list button:has-text('kidney-cut-expert')");
   await page.waitForSelector(".uplot");
@@ -73,7 +68,7 @@ test("a session opens, and any moment of it is a press away", async () => {
   await picture(page, "review-moment");
 });
 
-test("what happened is marked on the timeline, at its time", async () => {
+step("what happened is marked on the timeline, at its time", async () => {
   const marks = await page.locator(".mark").evaluateAll((all) => all.map((mark) => [mark.title, Number(mark.style.getPropertyValue("--at"))]));
   const events = expert.events.filter(({ kind }) => kind !== "late tick"); // of the machine, not of the hand
   assert.ok(events.some(({ kind }) => kind === "cut") && events.some(({ kind }) => kind === "contact begins"));
@@ -81,7 +76,7 @@ test("what happened is marked on the timeline, at its time", async () => {
   for (const [i, { tick }] of events.entries()) assert.ok(Math.abs(marks[i][1] - (tick * expert.tick_s) / expert.duration_s) < 1e-6, marks[i][0]);
 });
 
-test("where the browser draws with the processor, what faces away is left out, wherever it is seen from", async () => {
+step("where the browser draws with the processor, what faces away is left out, wherever it is seen from", async () => {
   await page.evaluate(() => {
     globalThis.largest = 0; // triangles of one draw: those of the organ
     const draw = WebGL2RenderingContext.prototype.drawElements;
@@ -111,7 +106,7 @@ test("where the browser draws with the processor, what faces away is left out, w
   for (let i = 0; i < 32; ++i) await page.keyboard.press("a");
 });
 
-test("full stop and comma zoom the timeline, + and - the view alone", async () => {
+step("full stop and comma zoom the timeline, + and - the view alone", async () => {
   await page.locator(".view > canvas").focus();
   await page.keyboard.press("+");
   await page.keyboard.press("-");
@@ -122,7 +117,7 @@ test("full stop and comma zoom the timeline, + and - the view alone", async () =
   await page.waitForSelector(".zoom output", { state: "detached" });
 });
 
-test("keys move and play it", async () => {
+step("keys move and play it", async () => {
   const before = await clock();
   await page.locator(".view > canvas").focus();
   await page.keyboard.press("ArrowRight");
@@ -156,7 +151,7 @@ test("keys move and play it", async () => {
   await page.waitForFunction((seconds) => Math.abs(Number.parseFloat(document.querySelector(".clock").textContent) - seconds) < 1e-3, expert.duration_s);
 });
 
-test("scrubbing", async () => {
+step("scrubbing", async () => {
   const times = [], replayed = [];
   await page.evaluate(() => {
     globalThis.compiled = 0;
@@ -166,7 +161,7 @@ test("scrubbing", async () => {
       return link.apply(this, of);
     };
   });
-  for (let i = 0; i < 25; ++i) {
+  for (let i = 0; i < 13; ++i) {
     const time = ((i * 7919) % 5000) / 1000;
     await page.locator(".scrub").evaluate((slider, value) => {
       slider.value = String(value);
@@ -178,13 +173,13 @@ test("scrubbing", async () => {
     replayed.push(await reading(page, "replayed after"));
   }
   const of = (list) => list.sort((a, b) => a - b);
-  console.log(`scrubbing: p50 ${of(times)[12]} ms, p95 ${times[23]} ms from release to picture, ${of(replayed)[12]} ms and ${replayed[23]} ms to the replayed one (286 spheres, software WebGL)`);
-  assert.ok(times.every((time, i) => time <= replayed[i]));
+  console.log(`scrubbing: half within ${of(times)[6]} ms, all within ${times[12]} ms from release to picture, ${of(replayed)[6]} ms and ${replayed[12]} ms to the replayed one (286 spheres, software WebGL)`);
+  assert.ok(times.every((time, i) => time <= replayed[i])); // both in the order of their lengths
   // A cut has new triangles, and the materials that the whole organ has.
   assert.ok((await page.evaluate(() => globalThis.compiled)) <= 2, "materials are not compiled again for each cut");
 });
 
-test("views, cutaway and cameras are those of export", async () => {
+step("views, cutaway and cameras are those of export", async () => {
   const choose = (label, value) => page.locator(`.look-bar label:has-text("${label}") select`).selectOption(value);
   const drawing = () => page.waitForSelector(".drawings canvas:not([hidden])");
   const pixels = () => page.evaluate(() => document.querySelector(".drawings canvas").toDataURL());
@@ -221,7 +216,7 @@ test("views, cutaway and cameras are those of export", async () => {
       const canvas = document.querySelector(".drawings canvas");
       return !canvas.hidden && !known.includes(canvas.toDataURL());
     }, [...seen], { timeout: 20000 }).catch(() => assert.fail(`nothing changed: ${what}`));
-    await page.waitForTimeout(700); // until the last picture of a turn
+    await studio.quiet(); // until the last picture of a turn
     seen.add(await pixels());
   };
   await choose("camera", "");
@@ -280,221 +275,8 @@ test("views, cutaway and cameras are those of export", async () => {
   await page.click("#tab-moment");
 });
 
-test("two sessions beside each other, compared", async () => {
-  await page.click("#tab-compare");
-  await page.locator("#panel select").selectOption(kClumsy);
-  await page.waitForFunction(() => document.querySelectorAll(".uplot").length === 3);
-  const ahead = async () => Number(await page.locator("#panel input[type=number]").inputValue());
-  const offsetAt = (kind) => Number((firstOf(clumsy, kind) - firstOf(expert, kind)).toFixed(3));
-  assert.equal(await ahead(), offsetAt("contact begins"));
-  await page.click("#panel button:has-text('first cut')");
-  const offset = offsetAt("cut");
-  assert.equal(await ahead(), offset);
-  // The command that it shows prints the same.
-  const command = ctpmBeside(folder, ...(await page.locator("#panel .command code").first().innerText()).split(" ").slice(1));
-  await page.click("#panel button.main");
-  await page.waitForSelector("#panel table");
-  await page.waitForFunction(() => { // they are scrolled to
-    const { bottom } = document.querySelector("#panel .jumps").getBoundingClientRect();
-    return bottom <= document.querySelector("aside").getBoundingClientRect().bottom + 1;
-  });
-  const worst = await page.locator("#panel .jumps button").first().innerText();
-  const limits = (await page.locator("#panel .jumps button").allInnerTexts()).filter((moment) => moment.includes("limit"));
-  for (const moment of limits) assert.match(moment, / (\S+), limit [\d.]+ \1$/, "a limit has the unit of what goes beyond it");
-  assert.ok(limits.length > 0);
-  // It is after the first session's end: both are shown at the same place of the path.
-  assert.ok(Number.parseFloat(worst) - offset > expert.duration_s);
-  await page.locator("#panel .jumps button").first().click();
-  await page.waitForFunction((shown) => document.querySelector(".captions .second").textContent.includes(shown), ` ${Number.parseFloat(worst).toFixed(2)}`);
-  assert.ok((await clock()) <= expert.duration_s);
-  // The advice is the report's.
-  const advice = JSON.parse(ctpm(folder, "compare", kExpert, kClumsy, "--json").out).advice;
-  assert.deepEqual(await page.locator("#panel .advice li").allInnerTexts(), advice);
-  const printed = (await command).out;
-  // Without their units, which the page writes smaller.
-  const names = await page.locator("#panel tbody th").evaluateAll((cells) => cells.map((cell) => cell.firstChild.textContent.trim()));
-  for (const name of names) assert.ok(printed.includes(name.split(" ").slice(0, 2).join(" ")), name);
-  assert.ok(printed.includes(worst.replace(/^[\d.]+ s\s*/, "").split(":")[0]));
-  await page.waitForTimeout(500);
-  assert.deepEqual(await seriousFindings(page), []);
-  await picture(page, "review-compare");
-});
-
-test("it is said whose session is whose, and they can be swapped at the same moment of both", async () => {
-  const whose = async () => (await page.locator(".captions b").allInnerTexts()).map((text) => text.replace(/ [-\d.]+ s$/, ""));
-  assert.deepEqual(await whose(), [`expert: ${kExpert}`, `trainee: ${kClumsy}`]);
-  await page.click("#panel button:has-text('first cut')");
-  const times = async () => (await page.locator(".captions b").allInnerTexts()).map((text) => Number(/([-\d.]+) s$/.exec(text)[1]));
-  const before = await times();
-  const swapped = async (first, second) => {
-    await page.click("#panel button:has-text('Swap')");
-    await page.waitForFunction((text) => document.querySelector(".captions .first")?.textContent.includes(text) && document.querySelector(".captions .second"), first);
-    await page.waitForSelector("#panel button[aria-pressed=true]:text-is('first cut')");
-    assert.deepEqual(await whose(), [`expert: ${first}`, `trainee: ${second}`]);
-    assert.equal(await page.locator("#panel .command code").first().innerText(), `ctpm compare ${first} ${second} -o report`);
-  };
-  await swapped(kClumsy, kExpert);
-  assert.deepEqual(await times(), [before[1], before[0]]);
-  await swapped(kExpert, kClumsy);
-  assert.deepEqual(await times(), before);
-});
-
-test("along the path both tools are at the same place of it, and by hand as far apart in time as one says", async () => {
-  const scrubTo = async (time) => {
-    await page.locator(".scrub").evaluate((slider, value) => {
-      slider.value = String(value);
-      slider.dispatchEvent(new Event("input", { bubbles: true }));
-    }, time);
-    await page.waitForFunction((shown) => document.querySelector(".clock").textContent.startsWith(shown), time.toFixed(3));
-    return (await page.locator(".captions b").allInnerTexts()).map((text) => Number(/([-\d.]+) s$/.exec(text)[1]));
-  };
-  await page.waitForSelector(".plots div[data-title='difference of force [N]']"); // curves come after the picture
-  const { path_s } = await studio.call("session.compare", { expert: kExpert, trainee: kClumsy });
-  const motions = await Promise.all([kExpert, kClumsy].map((path) => studio.call("session.motion", { path, rate_hz: 200 })));
-  const placeAt = (i, time) => motions[i].poses[Math.round(time / motions[i].interval_s)].slice(1, 4);
-  const apart = (here, there) => Math.hypot(...placeAt(0, here).map((x, axis) => x - placeAt(1, there)[axis]));
-  const moments = [0.3, 0.5, 0.7].map((share) => path_s[Math.floor(share * path_s.length)][0]);
-  const mean = async () => {
-    let sum = 0;
-    for (const moment of moments) sum += apart(...(await scrubTo(moment))) / moments.length;
-    return sum;
-  };
-  await page.click("#panel button:text-is('first contact')");
-  const atContact = await mean();
-  await page.click("#panel button:text-is('path')");
-  await page.waitForSelector("#panel button[aria-pressed=true]:text-is('path')");
-  const alongPath = await mean();
-  console.log(`aligned by first contact the tools are ${(1e3 * atContact).toFixed(1)} mm apart, along the path ${(1e3 * alongPath).toFixed(1)} mm`);
-  assert.ok(alongPath < 0.9 * atContact, `${alongPath} and ${atContact}`);
-  for (const moment of moments) {
-    const belong = path_s.filter(([here]) => here === moment).map(([, there]) => there), [here, there] = await scrubTo(moment);
-    assert.ok(here === Number(moment.toFixed(3)) && there >= Math.min(...belong) - 1e-3 && there <= Math.max(...belong) + 1e-3, `${here}, ${there}: ${belong}`);
-  }
-  await page.waitForTimeout(700); // until both are replayed
-  await picture(page, "review-along-path");
-  await page.locator("#panel input[type=number]").fill("0.25");
-  await page.keyboard.press("Tab");
-  assert.deepEqual(await scrubTo(2), [2, 2.25]);
-  assert.equal(await page.locator("#panel [aria-label='Align at'] button[aria-pressed=true]").count(), 0);
-  assert.deepEqual(await outOfReach(page), []);
-});
-
-test("notes stay, and a link leads to the moment", async () => {
-  const session = readFileSync(join(folder, kExpert));
-  await page.click("#panel button:has-text('first contact')");
-  await page.click("#tab-notes");
-  await page.locator(".view > canvas").focus();
-  await page.keyboard.press("Home");
-  for (let i = 0; i < 20; ++i) await page.keyboard.press("Shift+ArrowRight");
-  await page.fill("#panel textarea", "<b>too steep</b> here");
-  await page.click("#panel button.main");
-  await page.waitForSelector("#panel .jumps button:has-text('<b>too steep</b>')");
-  const time = await clock(); // of the first session; the one beside may begin earlier
-  const notes = JSON.parse(readFileSync(join(folder, "kidney-cut-expert.notes.json"), "utf8"));
-  assert.deepEqual(notes.notes, [{ time_s: time, text: "<b>too steep</b> here" }]);
-  assert.ok(readFileSync(join(folder, kExpert)).equals(session));
-  await page.click("#panel button:has-text('Copy the link')");
-  const link = await page.locator("#panel .hint code").innerText();
-  assert.ok(!link.includes("token"));
-  const both = await page.locator(".captions").innerText();
-  assert.match(both, new RegExp(`${kExpert}.*${kClumsy}`, "s"));
-  await picture(page, "review-notes");
-  await page.goto("about:blank");
-  await page.goto(link);
-  await page.waitForFunction((shown) => document.querySelector(".clock")?.textContent.startsWith(shown), time.toFixed(3));
-  await page.waitForFunction((shown) => document.querySelector(".captions").innerText === shown, both);
-  // A note of the session beside lies beside that one, at its own time.
-  await page.click("#tab-notes");
-  await page.locator("#panel select").selectOption(kClumsy);
-  await page.fill("#panel textarea", "hurried");
-  await page.click("#panel button.main");
-  await page.waitForSelector("#panel .jumps button:has-text('hurried')");
-  const beside = JSON.parse(readFileSync(join(folder, "kidney-cut-clumsy.notes.json"), "utf8")).notes;
-  assert.ok(both.includes(beside[0].time_s.toFixed(3)) && beside[0].time_s !== time, `${both} and ${beside[0].time_s}`);
-  assert.ok(await page.locator(`.mark.note[title*='hurried']`).count());
-});
-
-test("an export is the one that the shown command makes, and can be cancelled", async () => {
-  const field = (label) => page.locator(`#panel .field:has-text("${label}") input`);
-  const choose = (label, value) => page.locator(`#panel .field:has-text("${label}") select`).selectOption(value);
-  const makesWhatItShows = async (name, options) => {
-    const shown = await page.locator("#panel .command code").innerText();
-    for (const option of options) assert.ok(shown.includes(option), shown);
-    const command = ctpmBeside(folder, ...shown.split(" ").slice(1).map((word) => (word === `${name}.avi` ? `${name}-command.avi` : word)));
-    await page.click("#panel button.main");
-    await page.waitForSelector("#panel .good");
-    assert.equal((await command).code, 0);
-    assert.ok(readFileSync(join(folder, `${name}.avi`)).equals(readFileSync(join(folder, `${name}-command.avi`))));
-  };
-  // Two sessions beside each other; the command says no more than what was chosen.
-  await page.click("#tab-compare");
-  await page.locator("#panel select").selectOption(kClumsy);
-  await page.waitForSelector(".captions .second");
-  await page.click("#tab-export");
-  assert.match(await page.locator("#panel .command code").innerText(), /--align contact/);
-  assert.doesNotMatch(await page.locator("#panel .command code").innerText(), /--(overlay|slow-at|fps|size|speed|from-s|to-s)/);
-  // Aligned by hand, it says by how much.
-  await page.click("#tab-compare");
-  await page.locator("#panel input[type=number]").fill("-0.4");
-  await page.keyboard.press("Tab");
-  await page.click("#tab-export");
-  assert.match(await page.locator("#panel .command code").innerText(), /--align -0\.4( |$)/);
-  await field("file in the folder").fill("hand.avi");
-  await field("from [s]").fill("2.2");
-  await field("to [s]").fill("2.3");
-  await makesWhatItShows("hand", ["--align -0.4"]);
-  await field("file in the folder").fill("both.avi");
-  await field("from [s]").fill("2.2");
-  await field("to [s]").fill("2.5");
-  await choose("bring both together", "cut");
-  await choose("overlay", "small");
-  await makesWhatItShows("both", ["--align cut", "--overlay small", `--beside ${kClumsy}`]);
-  await picture(page, "review-export");
-  // One of them.
-  await page.click("#tab-compare");
-  await page.locator("#panel select").selectOption("");
-  await page.click("#tab-export");
-  await field("file in the folder").fill("one.avi");
-  await field("from [s]").fill("0.6");
-  await field("to [s]").fill("0.9");
-  await field("pictures a second").fill("10");
-  await choose("size", "854x480");
-  for (const moment of ["damage", "cuts"]) await page.click(`#panel fieldset label:has-text("${moment}")`);
-  await makesWhatItShows("one", ["--slow-at cut,damage", "--fps 10", "--size 854x480"]);
-  await picture(page, "review-export-one");
-  await field("file in the folder").fill("long.avi");
-  await field("from [s]").fill("0");
-  await field("to [s]").fill("");
-  await page.click("#panel button.main");
-  await page.waitForFunction(() => /exporting [1-9]\d* %/.test(document.querySelector("#panel .working")?.textContent ?? ""));
-  await page.click("#panel .working button");
-  await page.waitForSelector("#panel .problems");
-  assert.ok(!existsSync(join(folder, "long.avi")));
-});
-
-test("from a pair of sessions to a video of its worst moment", async () => {
-  const began = Date.now();
-  await page.click("#tab-compare");
-  await page.locator("#panel select").selectOption(kClumsy);
-  await page.waitForSelector(".captions .second");
-  await page.click("#panel button.main");
-  await page.locator("#panel .jumps button").first().click();
-  const [, shown] = / ([-\d.]+) s$/.exec(await page.locator(".captions .first").innerText());
-  await page.click("#tab-export");
-  await page.locator('#panel .field:has-text("file in the folder") input').fill("worst.avi");
-  await page.click("#panel button:has-text('1 s before')");
-  await page.click("#panel button.main");
-  await page.waitForSelector("#panel .good:has-text('worst.avi')");
-  console.log(`a video of the worst moment ${((Date.now() - began) / 1e3).toFixed(1)} s after the comparison was opened`);
-  const [from, to] = await Promise.all(["from [s]", "to [s]"].map(async (label) => Number(await page.locator(`#panel .field:has-text("${label}") input`).inputValue())));
-  assert.ok(from <= Number(shown) + 0.01 && Number(shown) - 0.01 <= to && to - from > 0.4, `${shown} s, and a video from ${from} to ${to} s`);
-  assert.ok(readFileSync(join(folder, "worst.avi")).length > 1e4);
-  await page.click("#tab-compare");
-  await page.locator("#panel select").selectOption("");
-  await page.click("#tab-export");
-});
-
-test("it fits a desk, a large screen and a tablet", async () => {
+step("it fits a desk, a large screen and a tablet", async () => {
+  await page.click("#tab-export"); // the longest panel
   for (const [width, height] of [[1280, 720], [1920, 1080], [820, 1180]]) {
     await page.setViewportSize({ width, height });
     await page.waitForTimeout(400);
@@ -513,25 +295,29 @@ test("it fits a desk, a large screen and a tablet", async () => {
   assert.deepEqual(await seriousFindings(page), []);
 });
 
-test("what cannot be read is left out and said, and the page goes on", async () => {
+step("what cannot be read is left out and said, and the page goes on", async () => {
   await page.setViewportSize({ width: 1280, height: 720 });
   await page.click(".list button:has-text('kidney-cut-expert')");
   await page.waitForSelector(".uplot");
   await page.click("#tab-moment");
   await quiet();
-  // Each: the kind of message, and what is done to it.
+  // Each: the kind of message, and what the page is given in its place.
   const spoilt = {
     "empty": [2, () => new ArrayBuffer(0)],
-    "of an unknown kind": [2, (m) => (m.u32[0] = 9)],
-    "cut off": [2, (m) => m.bytes.slice(0, m.bytes.byteLength - 8)],
-    "longer than it says": [2, (m) => Uint8Array.from([...new Uint8Array(m.bytes), 0, 0, 0, 0]).buffer],
-    "of more organs than follow": [2, (m) => (m.u32[31] = 4e9)],
-    "of more vertices than follow": [2, (m) => (m.u32[32] = 4e9)],
-    "of a triangle without vertices": [1, (m) => (m.u32[8] = m.u32[4])],
-    "of more triangles than follow": [1, (m) => (m.u32[6] = 4e9)],
-    "of a tool's vertices that do not follow": [3, (m) => (m.u32[3] = 4e9)],
+    "of an unknown kind": [2, (bytes, u32) => (u32[0] = 9)],
+    "cut off": [2, (bytes) => bytes.slice(0, bytes.byteLength - 8)],
+    "longer than it says": [2, (bytes) => Uint8Array.from([...new Uint8Array(bytes), 0, 0, 0, 0]).buffer],
+    "of more organs than follow": [2, (bytes, u32) => (u32[31] = 4e9)],
+    "of more vertices than follow": [2, (bytes, u32) => (u32[32] = 4e9)],
+    "of a triangle without vertices": [1, (bytes, u32) => (u32[8] = u32[4])],
+    "of more triangles than follow": [1, (bytes, u32) => (u32[6] = 4e9)],
+    "of a tool's vertices that do not follow": [3, (bytes, u32) => (u32[3] = 4e9)],
   };
-  const comes = (bytes) => page.evaluate((bytes) => void globalThis.socket.dispatchEvent(new MessageEvent("message", { data: Uint8Array.from(bytes).buffer })), bytes);
+  const comes = (kind, spoil) => page.evaluate(`(() => {
+    const bytes = globalThis.came[${kind}].slice(0), made = (${spoil})(bytes, new Uint32Array(bytes));
+    globalThis.socket.dispatchEvent(new MessageEvent("message", { data: made instanceof ArrayBuffer ? made : bytes }));
+    return bytes.byteLength;
+  })()`);
   const alert = page.locator(".unreadable");
   const severedAt = async (share) => {
     const plots = await page.locator(".plots").boundingBox();
@@ -541,10 +327,7 @@ test("what cannot be read is left out and said, and the page goes on", async () 
   };
   assert.ok((await severedAt(0.2)) < (await severedAt(0.8)));
   for (const [how, [kind, spoil]] of Object.entries(spoilt)) {
-    const bytes = Uint8Array.from(await page.evaluate((kind) => [...new Uint8Array(globalThis.came[kind])], kind)).buffer;
-    assert.ok(bytes.byteLength > 100, how);
-    const made = spoil({ bytes, u32: new Uint32Array(bytes) });
-    await comes([...new Uint8Array(made instanceof ArrayBuffer ? made : bytes)]);
+    assert.ok((await comes(kind, spoil)) > 100, how);
     await alert.waitFor();
     assert.match(await alert.innerText(), /cannot read/, how);
     if (kind === 3) await picture(page, "review-unreadable");
@@ -565,7 +348,7 @@ test("what cannot be read is left out and said, and the page goes on", async () 
   assert.ok(early < (await severedAt(0.8)), "it still shows any moment");
 });
 
-test("a picture that stands still is finer than one that moves", async () => {
+step("a picture that stands still is finer than one that moves", async () => {
   await page.evaluate(() => {
     const { viewport, drawElements } = WebGL2RenderingContext.prototype;
     let right = 0;
@@ -597,4 +380,4 @@ test("a picture that stands still is finer than one that moves", async () => {
   assert.notDeepEqual(await canvas.screenshot(), before, "the finer picture is the newest one");
 });
 
-test("nothing was complained about", () => assert.deepEqual(studio.complaints, []));
+step("nothing was complained about", () => assert.deepEqual(studio.complaints, []));

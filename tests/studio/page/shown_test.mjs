@@ -4,9 +4,10 @@ import { spawn } from "node:child_process";
 import { mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { networkInterfaces } from "node:os";
-import { after, before, test } from "node:test";
+import { after, before } from "node:test";
 import { openDevice } from "./igtl.mjs";
-import { chooseDevice, ctpm, ctpmBeside, makeFolder, openStudio, paths, picture, takeUp } from "./browser.mjs";
+import { chooseDevice, ctpm, ctpmBeside, makeFolder, openStudio, paths, picture, step, takeUp } from "./browser.mjs";
+import { cross, dot, length, minus, scaled, unit } from "./vectors.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm";
 let folder, studio, page;
@@ -28,14 +29,10 @@ after(async () => {
   rmSync(folder, { recursive: true });
 });
 
-test("there is no network, no display, and no program that the studio could call", (t) => {
+step("there is no network, no display, and no program that the studio could call", (t) => {
   if (!process.env.CTPM_HAS_NO_NETWORK) return t.skip("this machine does not let its user take the network away");
   assert.deepEqual(Object.keys(networkInterfaces()), ["lo"]);
 });
-
-const minus = (a, b) => a.map((x, i) => x - b[i]), dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const length = (a) => Math.hypot(...a), scaled = (a, by) => a.map((x) => x * by), unit = (a) => scaled(a, 1 / length(a));
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
 /** Places in a picture whose colour is as asked: a script of red, green, blue. */
 function placesOf(bytes, isSuch) {
@@ -51,8 +48,8 @@ function placesOf(bytes, isSuch) {
 }
 
 /** What `replay` writes of each tick. */
-function table(session) {
-  assert.equal(ctpm(folder, "replay", session, "--csv", `${session}.csv`).code, 0);
+async function table(session) {
+  assert.equal((await ctpmBeside(folder, "replay", session, "--csv", `${session}.csv`)).code, 0);
   return readFileSync(join(folder, `${session}.csv`), "utf8").trim().split("\n").slice(1).map((row) => row.split(","))
     .map((row) => ({ place: row.slice(3, 6).map(Number), force: Number(row[14]), depth: Number(row[15]) }));
 }
@@ -67,14 +64,15 @@ async function scrubTo(time) {
   await page.waitForFunction((text) => document.querySelector(".clock").textContent.startsWith(text), time.toFixed(3));
 }
 
-test("the numbers beside the curves are the table's: force, speed, and the difference", async () => {
+step("the numbers beside the curves are the table's: force, speed, and the difference", async () => {
+  const tables = Promise.all([table(kExpert), table(kClumsy)]);
   await page.click("header nav button:has-text('Review')");
   await page.click(".list button:has-text('kidney-cut-expert')");
   await page.waitForSelector(".uplot");
   await page.click("#tab-compare");
   await page.locator("#panel select").selectOption(kClumsy);
   await page.waitForSelector(".plots div[data-title='difference of force [N]']");
-  const [expert, clumsy] = [table(kExpert), table(kClumsy)];
+  const [expert, clumsy] = await tables;
   const contact = (name) => JSON.parse(ctpm(folder, "info", name, "--json").out).events.find(({ kind }) => kind === "contact begins").tick;
   const ahead = contact(kClumsy) - contact(kExpert); // [ticks]
   const beside = (title) => page.locator(`.plots div[data-title='${title}']`).getAttribute("data-at");
@@ -96,14 +94,15 @@ test("the numbers beside the curves are the table's: force, speed, and the diffe
   await picture(page, "shown-curves");
 });
 
-test("compare and verify say how far they are, in numbers, and can be cancelled", async () => {
+step("compare and verify say how far they are, in numbers, and can be cancelled", async () => {
   await page.evaluate(() => {
     globalThis.said = new Set();
     new MutationObserver(() => globalThis.said.add(document.querySelector(".working")?.textContent ?? "")).observe(document.body, { subtree: true, childList: true, characterData: true });
   });
   const saidOf = async (what) => (await page.evaluate(() => [...globalThis.said])).map((text) => new RegExp(`${what} (\\d+) %`).exec(text)?.[1]).filter((share) => share > 0 && share < 100);
-  await page.click("#panel button.main");
+  await page.click("#panel button:text-is('path')"); // which is known once they are compared
   await page.waitForSelector("#panel table");
+  await page.waitForSelector("#panel button[aria-pressed=true]:text-is('path')");
   assert.ok((await saidOf("comparing")).length > 0, "comparing N %");
   await page.locator("#panel select").selectOption("");
   await page.click("#tab-moment");
@@ -120,29 +119,36 @@ test("compare and verify say how far they are, in numbers, and can be cancelled"
   await page.waitForSelector(".captions:has-text('expert')");
 });
 
-test("playing at 1 x is real time", async () => {
+step("playing at 1 x is real time", async () => {
   await page.locator(".view > canvas").focus();
-  await page.keyboard.press("Home");
-  await quiet();
-  // By a clock that goes at a quarter: what the machine cannot do in time, it can do in four times that.
-  await page.evaluate(() => {
-    const real = performance.now.bind(performance), began = real();
-    performance.now = () => began + (real() - began) / 4;
-    globalThis.seen = [];
-    const read = () => globalThis.seen.push([performance.now() / 1e3, Number.parseFloat(document.querySelector(".clock").textContent)]);
-    globalThis.reading = setInterval(read, 20);
-  });
-  await page.keyboard.press("Space");
-  await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 1.3);
-  await page.keyboard.press("Space");
-  const seen = await page.evaluate(() => (clearInterval(globalThis.reading), delete performance.now, globalThis.seen));
-  const [from, to] = [seen.find(([, at]) => at > 0.2), seen.findLast(([, at]) => at < 1.2)];
-  const rate = (to[1] - from[1]) / (to[0] - from[0]);
-  console.log(`playing at 1 x goes ${rate.toFixed(3)} s in a second`);
+  // By a clock that goes slower: what the machine cannot do in time, it can do in some times that.
+  const rateBy = async (slower) => {
+    await page.keyboard.press("Home");
+    await quiet();
+    await page.evaluate((slower) => {
+      const real = performance.now.bind(performance), began = real();
+      performance.now = () => began + (real() - began) / slower;
+      globalThis.seen = [];
+      const read = () => globalThis.seen.push([performance.now() / 1e3, Number.parseFloat(document.querySelector(".clock").textContent)]);
+      globalThis.reading = setInterval(read, 5 * slower);
+    }, slower);
+    await page.keyboard.press("Space");
+    await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 1.3);
+    await page.keyboard.press("Space");
+    const seen = await page.evaluate(() => (clearInterval(globalThis.reading), delete performance.now, globalThis.seen));
+    const [from, to] = [seen.find(([, at]) => at > 0.2), seen.findLast(([, at]) => at < 1.2)];
+    return (to[1] - from[1]) / (to[0] - from[0]);
+  };
+  let rate = 0;
+  for (const slower of [2, 4, 16]) {
+    rate = await rateBy(slower);
+    console.log(`playing at 1 x goes ${rate.toFixed(3)} s in a second, by a clock that goes ${slower} times slower`);
+    if (Math.abs(rate - 1) < 0.06) break;
+  }
   assert.ok(Math.abs(rate - 1) < 0.06, `${rate}`);
 });
 
-test("the surface that the page draws covers what the exported picture of the same moment shows", async () => {
+step("the surface that the page draws covers what the exported picture of the same moment shows", async () => {
   await scrubTo(2.6);
   await quiet();
   await page.waitForTimeout(900); // the finer picture that stands still
@@ -180,7 +186,7 @@ test("the surface that the page draws covers what the exported picture of the sa
   assert.ok(overlap > 0.96, `${overlap}`);
 });
 
-test("the arrow is as long as the force, and points as it does", async () => {
+step("the arrow is as long as the force, and points as it does", async () => {
   await page.click("header nav button:has-text('Train')");
   await page.locator("aside input").first().fill("arrow.ctpm");
   await page.click(".list button:has-text('kidney'):not(:has-text('cut'))");
@@ -220,7 +226,7 @@ test("the arrow is as long as the force, and points as it does", async () => {
   assert.ok(off < Math.sin((8 * Math.PI) / 180), `${(Math.asin(off) * 180) / Math.PI} degrees`);
 });
 
-test("the shown commands verify and record do what the buttons did", async () => {
+step("the shown commands verify and record do what the buttons did", async () => {
   await page.keyboard.press("Escape");
   await page.waitForSelector("button:has-text('Train again')");
   const commands = () => page.locator("aside .command code").allInnerTexts();
@@ -269,11 +275,11 @@ test("the shown commands verify and record do what the buttons did", async () =>
   const infos = ["device.ctpm", "command.ctpm"].map((name) => JSON.parse(ctpm(folder, "info", name, "--json").out));
   for (const { metadata, values } of infos) assert.ok(metadata.source === "igtl-listen" && values.device_samples > 50, JSON.stringify(values));
   // Where it was held at the end; on the way down both depend on when its poses came.
-  const [button, command] = ["device.ctpm", "command.ctpm"].map((name) => table(name).at(-1).force);
+  const [button, command] = (await Promise.all(["device.ctpm", "command.ctpm"].map(table))).map((rows) => rows.at(-1).force);
   console.log(`a device holds ${button} N by the button, ${command} N by its command`);
   assert.ok(button > 0.2 && Math.abs(command / button - 1) < 0.02, `${button} and ${command} N`);
   assert.equal(ctpm(folder, "verify", "command.ctpm").code, 0);
   await field("in the hand").locator("select").selectOption("");
 });
 
-test("nothing was complained about", () => assert.deepEqual(studio.complaints, []));
+step("nothing was complained about", () => assert.deepEqual(studio.complaints, []));

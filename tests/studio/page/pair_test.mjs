@@ -1,0 +1,246 @@
+// A reviewer of two sessions in a browser: pair_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
+import assert from "node:assert/strict";
+import { existsSync, readFileSync, rmSync } from "node:fs";
+import { join } from "node:path";
+import { after, before } from "node:test";
+import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, picture, seriousFindings, step } from "./browser.mjs";
+
+const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm";
+let folder, studio, page, expert, clumsy;
+let path, command; // moments of both along the path, as the page got them, and the command that compares
+
+/** When an event of that kind first happened [s]. */
+function firstOf(info, kind) {
+  return info.events.find((event) => event.kind === kind).tick * info.tick_s;
+}
+
+before(async () => {
+  folder = makeFolder(kExpert, kClumsy);
+  [expert, clumsy] = [kExpert, kClumsy].map((name) => JSON.parse(ctpm(folder, "info", name, "--json").out));
+  studio = await openStudio(folder);
+  page = studio.page;
+  page.on("websocket", (socket) => socket.on("framereceived", ({ payload }) => {
+    if (typeof payload === "string" && payload.includes('"path_s"')) path = JSON.parse(payload).result.path_s;
+  }));
+  await page.reload();
+  await page.click("header nav button:has-text('Review')");
+});
+
+after(async () => {
+  assert.equal(await studio.close(), 0);
+  rmSync(folder, { recursive: true });
+});
+
+const clock = async () => Number.parseFloat(await page.locator(".clock").innerText());
+const ahead = async () => Number(await page.locator("#panel input[type=number]").inputValue());
+const offsetAt = (kind) => Number((firstOf(clumsy, kind) - firstOf(expert, kind)).toFixed(3));
+
+step("from a pair of sessions to a video of its worst moment", async () => {
+  await page.click(".list button:has-text('kidney-cut-expert')");
+  await page.waitForSelector(".uplot");
+  const began = Date.now();
+  await page.click("#tab-compare");
+  await page.locator("#panel select").selectOption(kClumsy);
+  await page.waitForSelector(".captions .second");
+  await page.click("#panel button.main");
+  await page.waitForSelector("#panel table");
+  await page.waitForFunction(() => { // they are scrolled to
+    const { bottom } = document.querySelector("#panel .jumps").getBoundingClientRect();
+    return bottom <= document.querySelector("aside").getBoundingClientRect().bottom + 1;
+  });
+  const worst = page.locator("#panel .jumps button").first(), when = Number.parseFloat(await worst.innerText());
+  await worst.click();
+  await page.waitForFunction((shown) => document.querySelector(".captions .second").textContent.includes(shown), ` ${when.toFixed(2)}`);
+  const [, shown] = / ([-\d.]+) s$/.exec(await page.locator(".captions .first").innerText());
+  await page.click("#tab-export");
+  await page.locator('#panel .field:has-text("file in the folder") input').fill("worst.avi");
+  await page.click("#panel button:has-text('1 s before')");
+  await page.click("#panel button.main");
+  await page.waitForSelector("#panel .good:has-text('worst.avi')");
+  console.log(`a video of the worst moment ${((Date.now() - began) / 1e3).toFixed(1)} s after the comparison was opened`);
+  const [from, to] = await Promise.all(["from [s]", "to [s]"].map(async (label) => Number(await page.locator(`#panel .field:has-text("${label}") input`).inputValue())));
+  assert.ok(from <= Number(shown) + 0.01 && Number(shown) - 0.01 <= to && to - from > 0.4, `${shown} s, and a video from ${from} to ${to} s`);
+  assert.ok(readFileSync(join(folder, "worst.avi")).length > 1e4);
+  await page.click("#tab-compare");
+  // The command that is shown compares too, while the page goes on.
+  command = ctpmBeside(folder, ...(await page.locator("#panel .command code").first().innerText()).split(" ").slice(1));
+});
+
+step("two sessions beside each other, compared", async () => {
+  await page.click("#panel button:text-is('first contact')");
+  assert.equal(await ahead(), offsetAt("contact begins"));
+  await page.click("#panel button:has-text('first cut')");
+  const offset = offsetAt("cut");
+  assert.equal(await ahead(), offset);
+  const worst = await page.locator("#panel .jumps button").first().innerText();
+  const limits = (await page.locator("#panel .jumps button").allInnerTexts()).filter((moment) => moment.includes("limit"));
+  for (const moment of limits) assert.match(moment, / (\S+), limit [\d.]+ \1$/, "a limit has the unit of what goes beyond it");
+  assert.ok(limits.length > 0);
+  // It is after the first session's end: both are shown at the same place of the path.
+  assert.ok(Number.parseFloat(worst) - offset > expert.duration_s);
+  await page.locator("#panel .jumps button").first().click();
+  await page.waitForFunction((shown) => document.querySelector(".captions .second").textContent.includes(shown), ` ${Number.parseFloat(worst).toFixed(2)}`);
+  assert.ok((await clock()) <= expert.duration_s);
+  // The command prints the same, and its report gives the same advice.
+  const printed = (await command).out;
+  const { advice } = JSON.parse(readFileSync(join(folder, "report", "results.json"), "utf8"));
+  assert.deepEqual(await page.locator("#panel .advice li").allInnerTexts(), advice);
+  // Without their units, which the page writes smaller.
+  const names = await page.locator("#panel tbody th").evaluateAll((cells) => cells.map((cell) => cell.firstChild.textContent.trim()));
+  for (const name of names) assert.ok(printed.includes(name.split(" ").slice(0, 2).join(" ")), name);
+  assert.ok(printed.includes(worst.replace(/^[\d.]+ s\s*/, "").split(":")[0]));
+  assert.deepEqual(await seriousFindings(page), []);
+  await picture(page, "review-compare");
+});
+
+step("along the path both tools are at the same place of it, and by hand as far apart in time as one says", async () => {
+  const scrubTo = async (time) => {
+    await page.locator(".scrub").evaluate((slider, value) => {
+      slider.value = String(value);
+      slider.dispatchEvent(new Event("input", { bubbles: true }));
+    }, time);
+    await page.waitForFunction((shown) => document.querySelector(".clock").textContent.startsWith(shown), time.toFixed(3));
+    return (await page.locator(".captions b").allInnerTexts()).map((text) => Number(/([-\d.]+) s$/.exec(text)[1]));
+  };
+  await page.waitForSelector(".plots div[data-title='difference of force [N]']"); // curves come after the picture
+  const motions = await Promise.all([kExpert, kClumsy].map((path) => studio.call("session.motion", { path, rate_hz: 200 })));
+  const placeAt = (i, time) => motions[i].poses[Math.round(time / motions[i].interval_s)].slice(1, 4);
+  const apart = (here, there) => Math.hypot(...placeAt(0, here).map((x, axis) => x - placeAt(1, there)[axis]));
+  const moments = [0.3, 0.5, 0.7].map((share) => path[Math.floor(share * path.length)][0]);
+  const mean = async () => {
+    let sum = 0;
+    for (const moment of moments) sum += apart(...(await scrubTo(moment))) / moments.length;
+    return sum;
+  };
+  await page.click("#panel button:text-is('first contact')");
+  const atContact = await mean();
+  await page.click("#panel button:text-is('path')");
+  await page.waitForSelector("#panel button[aria-pressed=true]:text-is('path')");
+  const alongPath = await mean();
+  console.log(`aligned by first contact the tools are ${(1e3 * atContact).toFixed(1)} mm apart, along the path ${(1e3 * alongPath).toFixed(1)} mm`);
+  assert.ok(alongPath < 0.9 * atContact, `${alongPath} and ${atContact}`);
+  for (const moment of moments) {
+    const belong = path.filter(([here]) => here === moment).map(([, there]) => there), [here, there] = await scrubTo(moment);
+    assert.ok(here === Number(moment.toFixed(3)) && there >= Math.min(...belong) - 1e-3 && there <= Math.max(...belong) + 1e-3, `${here}, ${there}: ${belong}`);
+  }
+  await picture(page, "review-along-path");
+  await page.locator("#panel input[type=number]").fill("0.25");
+  await page.keyboard.press("Tab");
+  assert.deepEqual(await scrubTo(2), [2, 2.25]);
+  assert.equal(await page.locator("#panel [aria-label='Align at'] button[aria-pressed=true]").count(), 0);
+  assert.deepEqual(await outOfReach(page), []);
+});
+
+step("it is said whose session is whose, and they can be swapped at the same moment of both", async () => {
+  const whose = async () => (await page.locator(".captions b").allInnerTexts()).map((text) => text.replace(/ [-\d.]+ s$/, ""));
+  assert.deepEqual(await whose(), [`expert: ${kExpert}`, `trainee: ${kClumsy}`]);
+  await page.click("#panel button:has-text('first cut')");
+  const times = async () => (await page.locator(".captions b").allInnerTexts()).map((text) => Number(/([-\d.]+) s$/.exec(text)[1]));
+  const before = await times();
+  const swapped = async (first, second) => {
+    await page.click("#panel button:has-text('Swap')");
+    await page.waitForFunction((text) => document.querySelector(".captions .first")?.textContent.includes(text) && document.querySelector(".captions .second"), first);
+    await page.waitForSelector("#panel button[aria-pressed=true]:text-is('first cut')");
+    assert.deepEqual(await whose(), [`expert: ${first}`, `trainee: ${second}`]);
+    assert.equal(await page.locator("#panel .command code").first().innerText(), `ctpm compare ${first} ${second} -o report`);
+  };
+  await swapped(kClumsy, kExpert);
+  assert.deepEqual(await times(), [before[1], before[0]]);
+  await swapped(kExpert, kClumsy);
+  assert.deepEqual(await times(), before);
+});
+
+step("notes stay, and a link leads to the moment", async () => {
+  const session = readFileSync(join(folder, kExpert));
+  await page.click("#panel button:has-text('first contact')");
+  await page.click("#tab-notes");
+  await page.locator(".view > canvas").focus();
+  await page.keyboard.press("Home");
+  for (let i = 0; i < 20; ++i) await page.keyboard.press("Shift+ArrowRight");
+  await page.fill("#panel textarea", "<b>too steep</b> here");
+  await page.click("#panel button.main");
+  await page.waitForSelector("#panel .jumps button:has-text('<b>too steep</b>')");
+  const time = await clock(); // of the first session; the one beside may begin earlier
+  const notes = JSON.parse(readFileSync(join(folder, "kidney-cut-expert.notes.json"), "utf8"));
+  assert.deepEqual(notes.notes, [{ time_s: time, text: "<b>too steep</b> here" }]);
+  assert.ok(readFileSync(join(folder, kExpert)).equals(session));
+  await page.click("#panel button:has-text('Copy the link')");
+  const link = await page.locator("#panel .hint code").innerText();
+  assert.ok(!link.includes("token"));
+  const both = await page.locator(".captions").innerText();
+  assert.match(both, new RegExp(`${kExpert}.*${kClumsy}`, "s"));
+  await picture(page, "review-notes");
+  await page.goto("about:blank");
+  await page.goto(link);
+  await page.waitForFunction((shown) => document.querySelector(".clock")?.textContent.startsWith(shown), time.toFixed(3));
+  await page.waitForFunction((shown) => document.querySelector(".captions").innerText === shown, both);
+  // A note of the session beside lies beside that one, at its own time.
+  await page.click("#tab-notes");
+  await page.locator("#panel select").selectOption(kClumsy);
+  await page.fill("#panel textarea", "hurried");
+  await page.click("#panel button.main");
+  await page.waitForSelector("#panel .jumps button:has-text('hurried')");
+  const beside = JSON.parse(readFileSync(join(folder, "kidney-cut-clumsy.notes.json"), "utf8")).notes;
+  assert.ok(both.includes(beside[0].time_s.toFixed(3)) && beside[0].time_s !== time, `${both} and ${beside[0].time_s}`);
+  assert.ok(await page.locator(`.mark.note[title*='hurried']`).count());
+});
+
+step("an export is the one that the shown command makes, and can be cancelled", async () => {
+  const field = (label) => page.locator(`#panel .field:has-text("${label}") input`);
+  const choose = (label, value) => page.locator(`#panel .field:has-text("${label}") select`).selectOption(value);
+  const makesWhatItShows = async (name, options) => {
+    const shown = await page.locator("#panel .command code").innerText();
+    for (const option of options) assert.ok(shown.includes(option), shown);
+    const command = ctpmBeside(folder, ...shown.split(" ").slice(1).map((word) => (word === `${name}.avi` ? `${name}-command.avi` : word)));
+    await page.click("#panel button.main");
+    await page.waitForSelector("#panel .good");
+    assert.equal((await command).code, 0);
+    assert.ok(readFileSync(join(folder, `${name}.avi`)).equals(readFileSync(join(folder, `${name}-command.avi`))));
+  };
+  // Two sessions beside each other; the command says no more than what was chosen.
+  await page.click("#tab-compare");
+  await page.locator("#panel select").selectOption(kClumsy);
+  await page.waitForSelector(".captions .second");
+  await page.click("#tab-export");
+  assert.match(await page.locator("#panel .command code").innerText(), /--align contact/);
+  assert.doesNotMatch(await page.locator("#panel .command code").innerText(), /--(overlay|slow-at|fps|size|speed|from-s|to-s)/);
+  // Aligned by hand, it says by how much.
+  await page.click("#tab-compare");
+  await page.locator("#panel input[type=number]").fill("-0.4");
+  await page.keyboard.press("Tab");
+  await page.click("#tab-export");
+  assert.match(await page.locator("#panel .command code").innerText(), /--align -0\.4( |$)/);
+  await field("file in the folder").fill("hand.avi");
+  await field("from [s]").fill("2.2");
+  await field("to [s]").fill("2.3");
+  await makesWhatItShows("hand", ["--align -0.4"]);
+  await field("file in the folder").fill("both.avi");
+  await field("from [s]").fill("2.2");
+  await field("to [s]").fill("2.5");
+  await choose("bring both together", "cut");
+  await choose("overlay", "small");
+  await makesWhatItShows("both", ["--align cut", "--overlay small", `--beside ${kClumsy}`]);
+  await picture(page, "review-export");
+  // One of them.
+  await page.click("#tab-compare");
+  await page.locator("#panel select").selectOption("");
+  await page.click("#tab-export");
+  await field("file in the folder").fill("one.avi");
+  await field("from [s]").fill("0.6");
+  await field("to [s]").fill("0.9");
+  await field("pictures a second").fill("10");
+  await choose("size", "854x480");
+  for (const moment of ["damage", "cuts"]) await page.click(`#panel fieldset label:has-text("${moment}")`);
+  await makesWhatItShows("one", ["--slow-at cut,damage", "--fps 10", "--size 854x480"]);
+  await picture(page, "review-export-one");
+  await field("file in the folder").fill("long.avi");
+  await field("from [s]").fill("0");
+  await field("to [s]").fill("");
+  await page.click("#panel button.main");
+  await page.waitForFunction(() => /exporting [1-9]\d* %/.test(document.querySelector("#panel .working")?.textContent ?? ""));
+  await page.click("#panel .working button");
+  await page.waitForSelector("#panel .problems");
+  assert.ok(!existsSync(join(folder, "long.avi")));
+});
+
+step("nothing was complained about", () => assert.deepEqual(studio.complaints, []));
