@@ -38,11 +38,18 @@ std::size_t rows_left_behind(const State& state, bool cuts) {
 
 }  // namespace
 
+/// Elements that a surface of the first `rows` rows of that of `state` knows to be severed: in front of a blade that
+/// still cuts it knows none.
+static const std::vector<std::uint8_t>& known_severed(const State& state, std::size_t rows) {
+  static const std::vector<std::uint8_t> none;
+  return rows == cutting::swept_rows(state) ? state.axial_severed : none;
+}
+
 /// Whether a surface is the first `rows` rows of that of `state`. Two that agree in their last rows agree in those
 /// before them.
 static bool is_same(const State& surface, const State& state, std::size_t rows) {
   const std::size_t points = rows * kEdgeNodes;
-  if (surface.swept.size() != points) return false;
+  if (surface.swept.size() != points || surface.axial_severed != known_severed(state, rows)) return false;
   for (std::size_t n = points - std::min(points, 2 * kEdgeNodes); n < points; ++n)
     if (!(surface.swept[n] == state.swept[n]) || surface.swept_organ[n] != state.swept_organ[n]) return false;
   return true;
@@ -90,7 +97,7 @@ void CutSurfaces::start(const State& state, std::size_t rows) {
   surface->swept = state.swept, surface->swept.resize(rows * kEdgeNodes);
   surface->swept_organ.assign(state.swept_organ.begin(),
                               state.swept_organ.begin() + std::ptrdiff_t(surface->swept.size()));
-  if (rows == cutting::swept_rows(state)) surface->axial_severed = state.axial_severed;
+  surface->axial_severed = known_severed(state, rows);
   if (rows > 0) around_ = Box(surface->swept[0]);
   for (std::size_t n = 0; n < surface->swept.size(); ++n) around_.add(surface->swept[n]);
   double spacing = 0;

@@ -384,7 +384,7 @@ bool CutGrid::update(const State& state) {
       if (!(place(row, n) == front[n])) return false;
     return true;
   };
-  if (rows == rows_ && (rows == 0 || is_row(rows - 1, last_))) return false;
+  if (rows == rows_ && (rows == 0 || (is_row(rows - 1, last_) && torn_tissue_.knows_severed(state)))) return false;
   if (rows < rows_ || (rows_ > 1 && !is_row(rows_ - 2, before_))) reset();
   // The last row has moved: what it severed is found again, so that the result depends on `state` alone.
   take_back_last_row();

@@ -91,8 +91,8 @@ std::vector<std::uint8_t> TornTissue::blocks_at_cut(const CutGrid& grid) const {
 }
 
 void TornTissue::take_severed(const State& state) {
-  network_.axial_severed = by_rows_;
-  for (std::size_t e = 0; e < state.axial_severed.size(); ++e) network_.axial_severed[e] |= state.axial_severed[e];
+  by_state_ = state.axial_severed, network_.axial_severed = by_rows_;
+  for (std::size_t e = 0; e < by_state_.size(); ++e) network_.axial_severed[e] |= by_state_[e];
 }
 
 /// For each node in tissue the sphere that is the fewest edges away in whole tissue; -1: none is, or none is asked for.
@@ -163,8 +163,9 @@ bool TornTissue::came_apart(Index p, Index q) {
 }
 
 TornTissue::Tear TornTissue::find(const CutGrid& grid, const State& state) {
-  if (severed_.empty() && by_last_.empty()) return {};
   take_severed(state);
+  if (std::none_of(network_.axial_severed.begin(), network_.axial_severed.end(), [](auto s) { return s != 0; }))
+    return {};
   pieces_.find(network_), apart_.clear();
   const std::vector<std::uint8_t> blocks = blocks_at_cut(grid);
   const auto [nearest, first] = carry(grid, state, blocks);

@@ -51,6 +51,8 @@ class TornTissue {
   };
   /// `state`: of the swept surface.
   Tear find(const CutGrid& grid, const State& state);
+  /// Whether the last find() was of a State with the same severed elements.
+  bool knows_severed(const State& state) const { return by_state_ == state.axial_severed; }
 
  private:
   void take_severed(const State& state);
@@ -66,8 +68,9 @@ class TornTissue {
   const Model& model_;
   std::size_t organ_;
   cutting::RestElements elements_;
-  std::vector<std::uint8_t> by_rows_;  ///< elements that the rows sever (axial_count)
-  State network_;                      ///< only the severed elements, of the rows and of the State
+  std::vector<std::uint8_t> by_rows_;   ///< elements that the rows sever (axial_count)
+  std::vector<std::uint8_t> by_state_;  ///< that the State had severed in the last find()
+  State network_;                       ///< only the severed elements, of the rows and of the State
   cutting::Pieces pieces_;
   std::vector<std::int32_t> whole_;  ///< the first sphere of the piece of each sphere before any cut (sphere_count)
   std::vector<cutting::Crossing> severed_, by_last_;
