@@ -11,8 +11,8 @@ namespace {
 /// a cut some two thirds are whole, between two cuts a spacing apart less than a half.
 constexpr double kCrumb = 0.12, kWhole = 0.35;
 
-/// What a crumb bears beside others: where there is nothing else, it bears all. Less than a pivot that counts in RestMap,
-/// so that crumbs never make out what other spheres do not span.
+/// What a crumb bears beside others: where there is nothing else, it bears all. Less than a pivot that counts in
+/// RestMap, so that crumbs never make out what other spheres do not span.
 constexpr double kLeast = 1e-9;
 
 }  // namespace

@@ -124,8 +124,7 @@ TEST_F(ImportProgram, AHoleWiderThanUsualIsFilledWhenThatIsAskedFor) {
 }
 
 TEST_F(ImportProgram, CrumbsFarAwayDoNotMakeTheOrganUnusuallyLarge) {
-  const importers::RawMesh crumb = zoo::sphere(3, 1, {150, 0, 0});
-  write("crumb.obj", zoo::to_obj_text(zoo::both(bean(1, 3), crumb)));
+  write("crumb.obj", zoo::to_obj_text(zoo::both(bean(1, 3), zoo::sphere(3, 1, {150, 0, 0}))));
   const auto outcome = import("crumb.obj");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   expect_says(report(), {"\"code\": \"unit_guessed\"", "\"code\": \"other_part\""});
@@ -454,7 +453,7 @@ TEST_F(ImportProgram, AnAuthorsOwnMaterialLiesBesideTheScene) {
 
 TEST_F(ImportProgram, AnOrganThatFoldsOverIsRefusedWithWhatWouldHelp) {
   // A metre-long rope of fat, held at one end.
-  write("rope.obj", zoo::to_obj_text(zoo::moved(zoo::box({1000, 40, 40}, 20), [](Vec3 p) { return p; })));
+  write("rope.obj", zoo::to_obj_text(zoo::box({1000, 40, 40}, 20)));
   const auto outcome = run_ctpm({"import", "rope.obj", "--organ", "fat", "--unit", "mm", "--anchor",
                                  "plane:-450,0,0,1,0,0", "--spheres", "300", "-o", "my/rope.json"},
                                 folder_.path());
@@ -476,8 +475,7 @@ TEST_F(ImportProgram, CheckWarnsOfWhatIsOddAndPlanOfAScriptThatMisses) {
   write("probe.json", with("-", "\"probes\": [{\"name\": \"far\", \"at_mm\": [0, 0, 500]}], "));
   write("load.json", with("-", "\"loads\": [{\"at_mm\": [0, 900, 0], \"force_n\": [0, 0, 1]}], "));
   std::string free = good;
-  const std::size_t anchors = free.find("\"anchors\"");
-  const std::size_t lowest = free.find("\"lowest_mm\": ", anchors);
+  const std::size_t lowest = free.find("\"lowest_mm\": ", free.find("\"anchors\""));
   free.replace(lowest, free.find('}', lowest) - lowest, "\"lowest_mm\": 999");
   write("held.json", free);
   EXPECT_EQ(run_ctpm({"check", "scene.json"}, folder_.path()).out.find("warning"), std::string::npos);
