@@ -124,6 +124,7 @@ step("playing at 1 x is real time", async () => {
   // By a clock that goes slower: what the machine cannot do in time, it can do in some times that.
   const rateBy = async (slower) => {
     await page.keyboard.press("Home");
+    await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) === 0);
     await quiet();
     await page.evaluate((slower) => {
       const real = performance.now.bind(performance), began = real();
