@@ -17,26 +17,25 @@ constexpr double kLeast = 1e-9;
 
 }  // namespace
 
-Bearing::Bearing(const Model& model, const RestElements& elements) : model_(model), elements_(elements) {}
+Bearing::Bearing(const Model& model, const RestElements& elements)
+    : model_(model), severed_(model.axial.size(), 0), share_(model.sphere_count(), 1.0) {
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) all_.push_back(std::int32_t(elements.of(i).size()));
+  whole_ = all_;
+}
 
-double Bearing::share_of(std::size_t sphere) const {
-  const auto all = elements_.of(sphere);
-  if (all.empty()) return 1;
-  const auto whole =
-      std::count_if(all.begin(), all.end(), [&](std::int32_t e) { return severed_[std::size_t(e)] == 0; });
-  return std::clamp((double(whole) / double(all.size()) - kCrumb) / (kWhole - kCrumb), kLeast, 1.0);
+void Bearing::count(std::int32_t sphere, int change) {
+  const auto i = std::size_t(sphere);
+  whole_[i] += change;
+  share_[i] = std::clamp((double(whole_[i]) / double(all_[i]) - kCrumb) / (kWhole - kCrumb), kLeast, 1.0);
 }
 
 void Bearing::update(const State& state) {
-  if (state.axial_severed == severed_) return;
-  if (severed_.size() != state.axial_severed.size()) severed_.assign(state.axial_severed.size(), 0);
-  if (share_.empty()) share_.assign(model_.sphere_count(), 1.0);
-  const std::vector<std::uint8_t> before = severed_;
-  severed_ = state.axial_severed;
-  for (std::size_t e = 0; e < severed_.size(); ++e)
-    if (severed_[e] != before[e])
-      for (const std::int32_t sphere : {model_.axial.a[e], model_.axial.b[e]})
-        share_[std::size_t(sphere)] = share_of(std::size_t(sphere));
+  if (state.axial_severed.size() != severed_.size() || state.axial_severed == severed_) return;
+  for (std::size_t e = 0; e < severed_.size(); ++e) {
+    if (severed_[e] == state.axial_severed[e]) continue;
+    severed_[e] = state.axial_severed[e];
+    for (const std::int32_t sphere : {model_.axial.a[e], model_.axial.b[e]}) count(sphere, severed_[e] == 0 ? 1 : -1);
+  }
 }
 
 double BladeAt::share(std::int32_t sphere, double rest_distance, double spacing) const {

@@ -15,22 +15,22 @@ class RestElements;
 /// rest: a piece that fell away is not pulled at from afar. Without that all is 1.
 class Bearing {
  public:
-  /// Both must outlive the Bearing.
+  /// `model` must outlive the Bearing.
   Bearing(const Model& model, const RestElements& elements);
 
   /// Follows the severed elements of `state`.
   void update(const State& state);
 
   /// Share of a sphere by its elements: 1 where more than a third are whole, less from there on, but never 0.
-  double share(std::int32_t sphere) const { return share_.empty() ? 1.0 : share_[std::size_t(sphere)]; }
+  double share(std::int32_t sphere) const { return share_[std::size_t(sphere)]; }
 
  private:
-  double share_of(std::size_t sphere) const;
+  void count(std::int32_t sphere, int change);
 
   const Model& model_;
-  const RestElements& elements_;
-  std::vector<std::uint8_t> severed_;  ///< that were counted last
-  std::vector<double> share_;          ///< (sphere_count); empty: all are whole
+  std::vector<std::uint8_t> severed_;      ///< that are counted (axial_count)
+  std::vector<std::int32_t> all_, whole_;  ///< elements of each sphere (sphere_count)
+  std::vector<double> share_;              ///< (sphere_count)
 };
 
 /// Where a blade is that does something to a place in the tissue.
