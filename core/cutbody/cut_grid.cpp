@@ -188,7 +188,7 @@ void CutGrid::find_homes_outside() {
   }
 }
 
-/// Puts all spheres at their homes but those that carry no tissue.
+/// Puts all spheres at their homes but the strays.
 void CutGrid::move_strays(const std::vector<TornTissue::Tear::Stray>& strays) {
   std::vector<Index> nodes = home_;
   for (const auto& [sphere, node] : strays) nodes[std::size_t(sphere)] = node;

@@ -5,8 +5,8 @@
 namespace ctpm::cutbody {
 
 void NearestSpheres::forget() {
-  for (const Index node : has_some_) near_[std::size_t(node)].count = 0;
-  has_some_.clear(), is_found_ = false;
+  for (const Nears& near : near_) number_[std::size_t(near.node)] = -1;
+  near_.clear(), is_found_ = false;
 }
 
 bool NearestSpheres::is_apart(Index sphere, Index other) const {
@@ -17,20 +17,21 @@ bool NearestSpheres::is_apart(Index sphere, Index other) const {
 
 /// Adds a sphere to those of a node; false if it is one of them, or so near to one that that stands for both.
 bool NearestSpheres::add(Reached reached, Index hops) {
-  Nears& near = near_[std::size_t(reached.node)];
+  Index& number = number_[std::size_t(reached.node)];
+  if (number < 0) number = Index(near_.size()), near_.push_back({reached.node});
+  Nears& near = near_[std::size_t(number)];
   const auto end = near.sphere.begin() + near.count;
   if (near.count == Index(kMost) ||
       !std::all_of(near.sphere.begin(), end, [&](const Near& other) { return is_apart(reached.sphere, other.sphere); }))
     return false;
-  *end = {reached.sphere, hops};
-  if (near.count++ == 0) has_some_.push_back(reached.node);
+  *end = {reached.sphere, hops}, ++near.count;
   return true;
 }
 
 /// Goes out from all spheres at once, edge by edge, in the blocks around the cut.
 void NearestSpheres::find() {
   is_found_ = true;
-  near_.resize(std::size_t(grid_.count()));
+  number_.resize(std::size_t(grid_.count()), -1);
   const std::vector<std::uint8_t> blocks = grid_.widened(grid_.widened(grid_.cut_blocks()));
   std::vector<Reached> front, next;
   for (Index s = 0; s < grid_.sphere_count(); ++s)

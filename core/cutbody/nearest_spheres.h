@@ -35,14 +35,16 @@ class NearestSpheres {
   /// The nearest first; of several that are as near, any, but always the same one.
   std::span<const Near> of(Index node) {
     if (!is_found_) find();
-    const Nears& near = near_[std::size_t(node)];
+    if (number_[std::size_t(node)] < 0) return {};
+    const Nears& near = near_[std::size_t(number_[std::size_t(node)])];
     return {near.sphere.data(), std::size_t(near.count)};
   }
 
  private:
   struct Nears {
-    std::array<Near, kMost> sphere;
+    Index node;
     Index count = 0;
+    std::array<Near, kMost> sphere{};
   };
   struct Reached {
     Index node, sphere;
@@ -54,8 +56,8 @@ class NearestSpheres {
   const Model& model_;
   const CutGrid& grid_;
   bool is_found_ = false;
-  std::vector<Nears> near_;      ///< of each node
-  std::vector<Index> has_some_;  ///< nodes that have any
+  std::vector<Index> number_;  ///< of each node in near_; -1: it has none
+  std::vector<Nears> near_;    ///< of the nodes that have any
 };
 
 }  // namespace ctpm::cutbody
