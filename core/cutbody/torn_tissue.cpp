@@ -64,7 +64,8 @@ TornTissue::TornTissue(const Model& model, std::size_t organ, const cutting::Tis
 
 void TornTissue::sever(const cutting::Front& from, const cutting::Front& to, const cutting::NewlySwept& newly,
                        bool may_move) {
-  cutting::find_severed(model_, elements_, organ_, from, to, newly, by_rows_, may_move ? by_last_ : severed_);
+  std::vector<cutting::Crossing> stays;
+  cutting::find_severed(model_, elements_, organ_, from, to, newly, by_rows_, may_move ? by_last_ : stays);
 }
 
 void TornTissue::take_back() {
@@ -73,8 +74,8 @@ void TornTissue::take_back() {
 }
 
 void TornTissue::reset() {
-  take_back();
-  by_last_.swap(severed_), take_back();
+  std::fill(by_rows_.begin(), by_rows_.end(), std::uint8_t(0));
+  by_last_.clear();
 }
 
 /// Marks the blocks of a grid around the spheres that lost an element: elsewhere nothing can tear.

@@ -73,7 +73,7 @@ class TornTissue {
   State network_;                       ///< only the severed elements, of the rows and of the State
   cutting::Pieces pieces_;
   std::vector<std::int32_t> whole_;  ///< the first sphere of the piece of each sphere before any cut (sphere_count)
-  std::vector<cutting::Crossing> severed_, by_last_;
+  std::vector<cutting::Crossing> by_last_;                       ///< what the last row severed, which may still move
   std::map<std::pair<std::int32_t, std::int32_t>, bool> apart_;  ///< pairs of spheres that were asked for
   std::vector<std::uint32_t> reached_in_;                        ///< the last search that reached each sphere
   std::uint32_t search_ = 0;

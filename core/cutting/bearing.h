@@ -12,7 +12,7 @@ class RestElements;
 
 /// How much of what a blade does to a place each sphere around it can bear. A crumb that hangs on few elements, or on
 /// none, bears next to nothing: it would be flung away. And a blade reaches only what is near it, wherever that was at
-/// rest: a piece that fell away is not pulled at from afar. Without that all is 1.
+/// rest: a piece that fell away is not pulled at from afar. All other spheres bear in full.
 class Bearing {
  public:
   /// `model` must outlive the Bearing.
