@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
 import { largeMesh } from "./large_mesh.mjs";
-import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings, step, takeUp, until } from "./browser.mjs";
+import { ctpm, ctpmBeside, leave, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings, step, takeUp, until } from "./browser.mjs";
 
 let folder, studio, page;
 
@@ -17,10 +17,7 @@ before(async () => {
   await page.click("header nav button:has-text('Author')");
 });
 
-after(async () => {
-  assert.equal(await studio.close(), 0);
-  rmSync(folder, { recursive: true });
-});
+after(() => leave(studio, folder));
 
 const kScene = "my-kidney-scene.json";
 const { onDisk, text, scene, button, handle, settled, write, centreOf, drag, untilSaved, save, taken } = authorOf(() => page, () => folder, kScene);

@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
-import { ctpm, ctpmBeside, makeFolder, moveMouse, openStudio, outOfReach, paths, picture, reading, seriousFindings, step, takeUp } from "./browser.mjs";
+import { ctpm, ctpmBeside, leave, makeFolder, moveMouse, openStudio, outOfReach, paths, picture, reading, seriousFindings, step, takeUp } from "./browser.mjs";
 
 let folder, studio, page;
 const kScene = "kidney.json";
@@ -19,10 +19,7 @@ before(async () => {
   await openScene();
 });
 
-after(async () => {
-  assert.equal(await studio.close(), 0);
-  rmSync(folder, { recursive: true });
-});
+after(() => leave(studio, folder));
 
 async function openScene() {
   await page.click("header nav button:has-text('Author')");

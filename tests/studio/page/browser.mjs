@@ -1,4 +1,5 @@
 // A studio and a browser that shows it.
+import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { cpSync, mkdirSync, mkdtempSync, readdirSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -89,6 +90,12 @@ export async function openBrowser(options = {}) {
     rmSync(profile, { recursive: true, force: true });
   };
   return { page, complaints, close };
+}
+
+/** Closes a studio, which found nothing wrong, and removes its folder. */
+export async function leave(studio, folder) {
+  assert.equal(await studio.close(), 0);
+  rmSync(folder, { recursive: true });
 }
 
 /** Serves `folder` and opens its page. */

@@ -1,10 +1,10 @@
 // What leads the hands of a trainee: mouse, keys, gamepad, device, fingers, and an expert's ghost: hands_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { readFileSync, rmSync, writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { openDevice } from "./igtl.mjs";
-import { chooseDevice, ctpm, ctpmBeside, makeFolder, moveMouse, openStudio, outOfReach, picture, reading, seriousFindings, step, takeUp, until } from "./browser.mjs";
+import { chooseDevice, ctpm, ctpmBeside, leave, makeFolder, moveMouse, openStudio, outOfReach, picture, reading, seriousFindings, step, takeUp, until } from "./browser.mjs";
 import { begin, end, handAxes, untilFelt } from "./trainee_page.mjs";
 import { dot, minus, scaled } from "./vectors.mjs";
 
@@ -22,10 +22,7 @@ before(async () => {
   await page.click("header nav button:has-text('Train')");
 });
 
-after(async () => {
-  assert.equal(await studio.close(), 0);
-  rmSync(folder, { recursive: true });
-});
+after(() => leave(studio, folder));
 
 step("the mouse leads one of two hands, and the other one stays", async () => {
   await begin(page, "two", "two.ctpm");

@@ -1,9 +1,9 @@
 // A reviewer of two sessions in a browser: pair_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { existsSync, readFileSync, rmSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
-import { ctpm, ctpmBeside, makeFolder, openStudio, outOfReach, picture, seriousFindings, step } from "./browser.mjs";
+import { ctpm, ctpmBeside, leave, makeFolder, openStudio, outOfReach, picture, seriousFindings, step } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm";
 let folder, studio, page, expert, clumsy;
@@ -26,10 +26,7 @@ before(async () => {
   await page.click("header nav button:has-text('Review')");
 });
 
-after(async () => {
-  assert.equal(await studio.close(), 0);
-  rmSync(folder, { recursive: true });
-});
+after(() => leave(studio, folder));
 
 const clock = async () => Number.parseFloat(await page.locator(".clock").innerText());
 const ahead = async () => Number(await page.locator("#panel input[type=number]").inputValue());

@@ -1,10 +1,10 @@
 // An author who places things in a scene with the mouse: placing_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { readFileSync, rmSync } from "node:fs";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
-import { ctpm, makeFolder, openStudio, outOfReach, picture, step } from "./browser.mjs";
+import { ctpm, leave, makeFolder, openStudio, outOfReach, picture, step } from "./browser.mjs";
 
 let folder, studio, page;
 const kScene = "kidney.json";
@@ -20,10 +20,7 @@ before(async () => {
   await settled();
 });
 
-after(async () => {
-  assert.equal(await studio.close(), 0);
-  rmSync(folder, { recursive: true });
-});
+after(() => leave(studio, folder));
 
 /** Distance of a place from the nearest vertex of the mesh [mm]. */
 function fromMesh(place) {

@@ -1,9 +1,9 @@
 // A reviewer in a browser: review_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { readFileSync, readdirSync, rmSync } from "node:fs";
+import { readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
-import { ctpm, ctpmBeside, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings, step } from "./browser.mjs";
+import { ctpm, ctpmBeside, leave, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings, step } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm";
 let folder, studio, page, expert;
@@ -28,10 +28,7 @@ before(async () => {
   await page.click("header nav button:has-text('Review')");
 });
 
-after(async () => {
-  assert.equal(await studio.close(), 0);
-  rmSync(folder, { recursive: true });
-});
+after(() => leave(studio, folder));
 
 const clock = async () => Number.parseFloat(await page.locator(".clock").innerText());
 const drawn = () => page.locator(".view > canvas").screenshot();

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
-import { ctpm, ctpmBeside, makeFolder, moveMouse, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings, step, takeUp, until } from "./browser.mjs";
+import { ctpm, ctpmBeside, leave, makeFolder, moveMouse, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings, step, takeUp, until } from "./browser.mjs";
 import { begin, end, handAxes, untilFelt } from "./trainee_page.mjs";
 import { dot, minus } from "./vectors.mjs";
 
@@ -25,10 +25,7 @@ before(async () => {
   await page.click("header nav button:has-text('Train')");
 });
 
-after(async () => {
-  assert.equal(await studio.close(), 0);
-  rmSync(folder, { recursive: true });
-});
+after(() => leave(studio, folder));
 
 const kTissue = [[60, 0, 0], [255, 60, 60]], kArrow = [[240, 185, 57], [255, 215, 117]]; // least and most of red, green, blue
 
