@@ -28,6 +28,7 @@ export function firstCamera(view: SceneView): CameraView | undefined {
 }
 
 const kLookAgain = 2; // whether a picture is done [ms]
+const kLongerThanFrames = 25; // a picture that took so long is followed at once: it would wait for half a frame of the screen [ms]
 const kStandsStill = 400; // a picture, if no other one follows for that long [ms]
 
 /** What keys do to a view: right and up [rad], times as far away. */
@@ -137,15 +138,23 @@ export class Viewer {
   }
 
   private drawNext(): void {
-    requestAnimationFrame(() => {
-      const began = performance.now();
-      this.isWanted = false;
-      this.drawNow(false);
-      this.awaitPicture(() => {
-        this.quality.add(performance.now() - began);
-        if (this.isWanted) this.drawNext();
-        else if (this.quality.isReduced) this.still = setTimeout(() => this.drawStill(), kStandsStill);
-      });
+    requestAnimationFrame(() => this.drawMoving());
+  }
+
+  private drawMoving(): void {
+    const began = performance.now();
+    this.isWanted = false;
+    this.drawNow(false);
+    this.awaitPicture(() => {
+      const took = performance.now() - began;
+      this.quality.add(took);
+      if (!this.isWanted) {
+        if (this.quality.isReduced) this.still = setTimeout(() => this.drawStill(), kStandsStill);
+      } else if (took > kLongerThanFrames) {
+        this.drawMoving();
+      } else {
+        this.drawNext();
+      }
     });
   }
 
