@@ -31,12 +31,22 @@ constexpr double kOpen = 0.1;
 /// often, at more triangles.
 constexpr double kMargin = 0.1;
 
+/// Pressure is gathered within this part of a spacing and of the smallest ball's radius (our choice).
+constexpr double kGatherRadius = 0.125, kGatherShare = 0.25;
+
 constexpr double kPi = 3.14159265358979323846;
 
 /// Where tool and tissue coincide, no direction is better than another.
 Vec3 unit_or_down(Vec3 v, double least) {
   const double length = norm(v);
   return length > least ? v / length : Vec3{0, 0, -1};
+}
+
+double smallest_ball(const Model& model) {
+  double radius = std::numeric_limits<double>::infinity();
+  for (const Tool& tool : model.tools)
+    if (tool.kind == ToolKind::ball) radius = std::min(radius, tool.radius);
+  return radius;
 }
 
 /// Calls `visit(w0, w1, w2)` with the barycentric coordinates of the centre of each of n^2 equal parts of a triangle.
@@ -69,9 +79,14 @@ BallContact::BallContact(const Model& model, std::vector<surface::Body>& bodies,
       own_(model, 0, model.has_tool(ToolKind::ball) && bodies.empty() ? model.surfaces.size() : 0) {
   if (!model.has_tool(ToolKind::ball)) return;
   touchable_count_ = std::int32_t(model.touchable_count());
-  if (!own_.empty()) whole_.push_back({0, 0, &own_});
-  for (surface::Body& body : bodies) whole_.push_back({body.first_vertex, body.first_vertex, &body.surface});
-  for (const Surface& surface : model.surfaces) vertex_count_ += std::int32_t(surface.vertex.size());
+  if (!own_.empty()) whole_.push_back({0, 0, &own_, &gathering_});
+  for (surface::Body& body : bodies)
+    whole_.push_back({body.first_vertex, body.first_vertex, &body.surface, &gathering_});
+  const double finest = kGatherShare * smallest_ball(model);
+  for (std::size_t i = 0; i < model.surfaces.size(); ++i) {
+    gathering_.add(model.surfaces[i], std::min(kGatherRadius * model.organs[i].spacing, finest));
+    vertex_count_ += std::int32_t(model.surfaces[i].vertex.size());
+  }
   for (std::size_t hand = 0; hand < std::size_t(model.hands); ++hand)
     near_.emplace_back(whole_, vertex_count_, cuts, cuts.points().kind_of_ball(hand));
   const auto vertices = std::size_t(vertex_count_);
@@ -84,8 +99,8 @@ BallContact::BallContact(const Model& model, std::vector<surface::Body>& bodies,
     bare_.emplace_back(first, first + std::size_t(model.organs[i].count));
   }
   if (model.organs.empty()) bare_.emplace_back(0, model.sphere_count());
-  capacity_.first = vertices;
-  for (std::size_t v = 0; v < vertices; ++v) capacity_.second += follower(std::int32_t(v)).sphere.size();
+  for (std::int32_t v = 0; v < vertex_count_; ++v)
+    if (gathering_.at(v) == v) ++capacity_.first, capacity_.second += follower(v).sphere.size();
   for (const auto& [first, last] : bare_) {
     capacity_.first += last - first, capacity_.second += last - first;
     for (std::size_t i = first; i < last; ++i) largest_radius_ = std::max(largest_radius_, model.contact_radius[i]);
@@ -137,16 +152,18 @@ Reach BallContact::reach_of(const StateView& state, const BallMotion& ball) cons
   const auto add = [&](Vec3 place) { reach.distance = std::max(reach.distance, reach.add(place)); };
   const std::int32_t first = first_point_of(ball.hand);
   for (const std::int32_t point : state.touched) {
-    if (point >= first && point - first < vertex_count_) add(follower(point - first).of(state.position));
+    // The pressure on all vertices of its facet was gathered at each point.
+    if (point >= first && point - first < vertex_count_) {
+      add(follower(point - first).of(state.position));
+      for (const std::int32_t v : gathering_.gathered_at(point - first)) reach.add(follower(v).of(state.position));
+    }
     if (!cuts_.any() || !cuts_.points().is_of_ball(point, ball.hand)) continue;
     const cutbody::CutPoints::Place at = cuts_.points().place(point);
     cutbody::CutPatch* const patch = cuts_.patch(at);
     if (patch == nullptr) continue;
     const std::int32_t own = at.vertex - patch->body.first_vertex;
     add(patch->body.surface.place(own));
-    // The pressure on all vertices of its facet was gathered at this one.
-    for (std::size_t v = 0; v < patch->gathers_at.size(); ++v)
-      if (patch->gathers_at[v] == own) reach.add(patch->body.surface.place(std::int32_t(v)));
+    for (const std::int32_t v : patch->gathering.gathered_at(own)) reach.add(patch->body.surface.place(v));
   }
   const double deepest = kDeepest * ball.radius;
   if (reach.distance > deepest) {

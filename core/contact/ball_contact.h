@@ -30,8 +30,9 @@ struct BallMotion {
 /// the lattice carries would be, the ball dents it, with a pressure of dent_stiffness() times the dent's depth, which
 /// relaxes as the tissue does (Foundation). The depth is measured inwards from the surface to the far side of the ball,
 /// and counts across the ball there; small balls may therefore go deeper than the lattice follows. The pressure is
-/// integrated over the triangles and gathered at their corners, one contact each; from there it goes to the spheres
-/// with the weights of the binding.
+/// integrated over the triangles and gathered at their corners, or at one of those that are nearer to each other than
+/// spheres and ball resolve (Gathering), one contact each; from there it goes to the spheres with the weights of the
+/// binding.
 ///
 /// Organs without a surface (rigs) are touched at their spheres, with Model::contact_k each, and damped as Hunt &
 /// Crossley say (contact_damping).
@@ -97,6 +98,7 @@ class BallContact {
   const elements::Kernels& kernels_;
   CutSurfaces& cuts_;
   surface::NearSurface own_;                  ///< all organs as one; empty where there are bodies
+  surface::Gathering gathering_;              ///< of the vertices through all organs
   std::vector<Part> whole_;                   ///< own_, or the surfaces of the bodies
   std::vector<NearTriangles> near_;           ///< of the ball in each hand
   const std::vector<Part>* parts_ = &whole_;  ///< in find() with patches of cuts

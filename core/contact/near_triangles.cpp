@@ -51,7 +51,7 @@ void NearTriangles::look(const Reach& reach) {
   stretch_ = cuts_.any() ? cutbody::CutPatches::kStretch : 1;
   for (const BallPart& part : parts_) stretch_ = std::max(stretch_, part.surface->stretch());
   cuts_.near(reach, [&](cutbody::CutPatch& patch) {
-    parts_.push_back({slots_, cuts_.first_point(kind_, patch), &patch.body.surface, &patch});
+    parts_.push_back({slots_, cuts_.first_point(kind_, patch), &patch.body.surface, &patch.gathering, &patch});
     slots_ += parts_.back().slots();
   });
   for (std::size_t part = 0; part < parts_.size(); ++part)

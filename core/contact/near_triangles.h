@@ -36,12 +36,13 @@ struct Reach {
 struct BallPart {
   std::int32_t first_slot, first_point;
   surface::NearSurface* surface;
-  cutbody::CutPatch* patch = nullptr;  ///< null: whole organs
+  const surface::Gathering* gathering;  ///< of a patch's vertices, or of all slots of whole organs
+  cutbody::CutPatch* patch = nullptr;   ///< null: whole organs
 
   std::int32_t slots() const { return std::int32_t(surface->vertex_count()); }
   /// The slot at which what presses on a vertex is gathered.
   std::int32_t gathers_at(std::int32_t vertex) const {
-    return first_slot + (patch == nullptr ? vertex : patch->gathers_at[std::size_t(vertex)]);
+    return patch == nullptr ? gathering->at(first_slot + vertex) : first_slot + gathering->at(vertex);
   }
 };
 

@@ -65,27 +65,6 @@ struct Areas {
   }
 };
 
-/// For each vertex the one nearest to the middle of its facet at rest.
-std::vector<std::int32_t> middles_of_facets(const Surface& part, const surface::Facets& facets) {
-  std::vector<Vec3> sum(part.vertex.size());
-  std::vector<double> area(part.vertex.size(), 0);
-  for (std::size_t v = 0; v < part.vertex.size(); ++v) {
-    const auto vertex = std::int32_t(v);
-    const auto facet = std::size_t(facets.facet_of(vertex));
-    sum[facet] += facets.area(vertex) * part.vertex[v], area[facet] += facets.area(vertex);
-  }
-  std::vector<std::int32_t> nearest(part.vertex.size(), -1);
-  for (std::size_t v = 0; v < part.vertex.size(); ++v) {
-    const auto facet = std::size_t(facets.facet_of(std::int32_t(v)));
-    const auto off = [&](std::size_t u) { return norm(area[facet] * part.vertex[u] - sum[facet]); };
-    if (nearest[facet] < 0 || off(v) < off(std::size_t(nearest[facet]))) nearest[facet] = std::int32_t(v);
-  }
-  std::vector<std::int32_t> middles;
-  for (std::size_t v = 0; v < part.vertex.size(); ++v)
-    middles.push_back(nearest[std::size_t(facets.facet_of(std::int32_t(v)))]);
-  return middles;
-}
-
 /// The surface of a block, and what is known of its vertices.
 struct BlockSurface {
   Surface part;
@@ -357,8 +336,7 @@ std::vector<std::unique_ptr<CutPatch>> CutPatches::make(Index block) {
     surface::Body body{std::int32_t(organ_), first_vertex, surface::NearSurface(model_, organ_, part),
                        surface::Facets(part, kFacetRadius * model_.organs[organ_].spacing)};
     patches.push_back(std::make_unique<CutPatch>(CutPatch{std::move(body), block, piece, first_wall}));
-    patches.back()->gathers_at =
-        middles_of_facets(part, surface::Facets(part, kGatherRadius * model_.organs[organ_].spacing));
+    patches.back()->gathering.add(part, kGatherRadius * model_.organs[organ_].spacing);
     for (const std::size_t v : vertices) place[v].patch = patches.back().get();
     first_vertex += std::int32_t(vertices.size());
   }

@@ -11,6 +11,7 @@
 #include "core/model/stage.h"
 #include "core/model/state.h"
 #include "core/surface/bodies.h"
+#include "core/surface/gathering.h"
 
 namespace ctpm::cutbody {
 
@@ -28,9 +29,7 @@ struct CutPatch {
   std::int32_t first_wall;           ///< the first of the vertices that belong to walls
   std::vector<Opposite> opposite{};  ///< at the place of a vertex at rest; a vertex is its own where both walls end
 
-  /// The vertex at which a ball's pressure on each vertex is gathered: the middle one of those around it that face the
-  /// same way. The grid is finer than what the spheres resolve.
-  std::vector<std::int32_t> gathers_at{};
+  surface::Gathering gathering{};  ///< of a ball's pressure
 
   /// How far the wall at a vertex is from the other one [m]; 0 where they touch or overlap, infinite where nothing is
   /// on the other side.

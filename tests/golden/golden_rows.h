@@ -225,6 +225,11 @@ inline constexpr GoldenRow kGoldenRevision16[] = {
     {"touched edge, sdirk2", {0x9d4448529e209f43, 0x9cf078e437155cc0, 0x0ed4fb5cf05517bc, 0x11912acbc5736a47}},
 };
 
+inline constexpr GoldenRow kGoldenRevision17[] = {
+    {"fine mesh, auto", {0x00c4c498b1ca5a4c, 0xdbc03d3839fc62ff, 0xdef9c83dcf2f7d31, 0xeb92fdea24765e6b}},
+    {"fine mesh, sdirk2", {0x0deb52955a7f94bc, 0xcd0834d3da93624f, 0x7a73a7965dde6d5c, 0x394013e0edf693f8}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},   {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189},   {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
@@ -234,6 +239,7 @@ inline constexpr GoldenRevision kGoldenRevisions[] = {
     {11, kGoldenRevision11, 0x4162fa4fa1d24cae}, {12, kGoldenRevision12, 0x1a990242ddda6fc4},
     {13, kGoldenRevision13, 0xa5637b24229bb1f2}, {14, kGoldenRevision14, 0x463cb460f23844de},
     {15, kGoldenRevision15, 0xc7644e74b0d461e5}, {16, kGoldenRevision16, 0x304838863b606220},
+    {17, kGoldenRevision17, 0x47d495b0831911b},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

@@ -61,6 +61,7 @@ struct BlockSession {
   std::optional<Integrator> integrator;
   std::int32_t hands = 1;
   Inputs (*inputs)(int) = testing::golden_inputs;
+  double edge = 0.003;  ///< of a surface's triangles [m]
 };
 
 constexpr BlockSession kBlockSessions[] = {
@@ -91,6 +92,8 @@ constexpr BlockSession kSkinnedSessions[] = {
     {"two hands, auto", false, std::nullopt, 2, testing::two_hands_inputs},
     {"two hands, sdirk2", false, Integrator::sdirk2, 2, testing::two_hands_inputs},
     {"soft and two hands, auto", true, std::nullopt, 2, testing::two_hands_inputs},
+    {"fine mesh, auto", false, std::nullopt, 1, testing::golden_inputs, 0.001},
+    {"fine mesh, sdirk2", false, Integrator::sdirk2, 1, testing::golden_inputs, 0.001},
 };
 
 std::string to_text(const std::array<std::uint64_t, 4>& hash) {
@@ -155,8 +158,8 @@ TEST(Golden, TouchedSurfacesGiveTheSameBitsInEveryBuild) {
   for (const BlockSession& session : kSkinnedSessions) {
     const GoldenRow* row = find_row(session.name);
     ASSERT_NE(row, nullptr) << session.name;
-    expect_row(testing::run_golden(testing::make_skinned_model(6, 5, 5, session.is_soft, session.hands), 400,
-                                   session.integrator, {}, session.inputs),
+    expect_row(testing::run_golden(testing::make_skinned_model(6, 5, 5, session.is_soft, session.hands, session.edge),
+                                   400, session.integrator, {}, session.inputs),
                *row);
   }
 }

@@ -147,10 +147,10 @@ inline Model make_resisting_model(int ni, int nj, int nk, bool is_soft, double r
 }
 
 /// A block with a surface, which the ball touches and grips; soft enough for leapfrog if `is_soft`.
-inline Model make_skinned_model(int ni, int nj, int nk, bool is_soft, std::int32_t hands = 1) {
+inline Model make_skinned_model(int ni, int nj, int nk, bool is_soft, std::int32_t hands = 1, double edge = 0.003) {
   network::Material material = liver_material();
   if (is_soft) material.viscosity = 5e3, material.stiffness_scale = 0.29;
-  Model model = make_skinned_block(ni, nj, nk, network::Structure::ctpm, 0.003, material, network::Tiling::two_spheres);
+  Model model = make_skinned_block(ni, nj, nk, network::Structure::ctpm, edge, material, network::Tiling::two_spheres);
   model.tools = {ball(0.006), scalpel(0.06)}, model.hands = hands;
   return model;
 }

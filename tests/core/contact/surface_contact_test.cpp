@@ -23,8 +23,8 @@ Inputs at(Vec3 position) {
 }
 
 Model pressed_block(Integrator integrator, double radius,
-                    network::Structure structure = network::Structure::mass_spring) {
-  Model model = testing::make_skinned_block(5, 5, 4, structure);
+                    network::Structure structure = network::Structure::mass_spring, double edge = 3e-3) {
+  Model model = testing::make_skinned_block(5, 5, 4, structure, edge);
   model.tools = {testing::ball(radius)};
   model.solver.integrator = integrator, model.solver.substeps = integrator == Integrator::leapfrog ? 4 : 1;
   model.solver.tolerance = 1e-9, model.solver.velocity_floor = 1e-12;
@@ -121,6 +121,29 @@ TEST_P(SurfaceContact, IsTheSameWheneverItsTrianglesWereLookedFor) {
     for (int i = 0; i <= 20; ++i)
       most = std::max(most, step_both({-0.015, 0.01 - 1e-5 * i, kTop + radius - 1e-3 - 1e-4 * i}));
     EXPECT_GT(most, 0);
+  }
+}
+
+// A scanner's mesh is many times finer than what spheres and ball resolve.
+TEST_P(SurfaceContact, OfAFineMeshGivesTheForceOfAFineOneWithTheContactsOfACoarseOne) {
+  struct Press {
+    double force = 0;
+    int contacts = 0;
+  };
+  const auto press = [&](double edge, Vec3 place) {
+    const double radius = 0.01;
+    const Model model = pressed_block(GetParam(), radius, network::Structure::mass_spring, edge);
+    stepping::Stepper stepper(model);
+    State state = rest_state(model);
+    stepping::StepReport report;
+    for (int i = 0; i <= 40; ++i) report = stepper.step(state, at(place + Vec3{0, 0, kTop + radius - 1e-4 * i}));
+    for (int i = 0; i < 200; ++i) report = stepper.step(state, state.last_inputs);
+    return Press{report.tool_force.z, report.contacts};
+  };
+  for (const Vec3 place : {Vec3{0, 0, 0}, Vec3{0.0037, 0.0051, 0}}) {
+    const Press coarse = press(1.6e-3, place), fine = press(0.4e-3, place);  // facets have a radius of 1.5 mm
+    EXPECT_NEAR(fine.force / coarse.force, 1, 0.01);
+    EXPECT_LT(fine.contacts, 1.5 * coarse.contacts);
   }
 }
 

@@ -49,7 +49,8 @@ void expect_same(const std::vector<cutbody::CutPatch*>& a, const std::vector<cut
   for (std::size_t p = 0; p < a.size(); ++p) {
     ASSERT_EQ(a[p]->body.surface.vertex_count(), b[p]->body.surface.vertex_count());
     EXPECT_EQ(a[p]->block, b[p]->block);
-    EXPECT_EQ(a[p]->gathers_at, b[p]->gathers_at);
+    const auto count = std::int32_t(a[p]->body.surface.vertex_count());
+    for (std::int32_t v = 0; v < count; ++v) EXPECT_EQ(a[p]->gathering.at(v), b[p]->gathering.at(v));
     for (std::size_t v = 0; v < a[p]->body.surface.vertex_count(); ++v)
       EXPECT_EQ(a[p]->body.surface.place(std::int32_t(v)), b[p]->body.surface.place(std::int32_t(v)));
   }
