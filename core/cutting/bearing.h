@@ -21,6 +21,9 @@ class Bearing {
   /// Follows the severed elements of `state`.
   void update(const State& state);
 
+  /// Whether an element of a sphere is severed.
+  bool has_severed(std::int32_t sphere) const { return whole_[std::size_t(sphere)] < all_[std::size_t(sphere)]; }
+
   /// Share of a sphere by its elements: 1 where more than a third are whole, less from there on, but never 0.
   double share(std::int32_t sphere) const { return share_[std::size_t(sphere)]; }
 

@@ -246,7 +246,8 @@ double CutFront::in_cut(std::size_t organ, Vec3 rest) const {
 /// How wide the faces of the cut gape around a place, along the unit vector `across` [m].
 double CutFront::opening(const Place& at, const StateView& state, Vec3 across) const {
   double sum = 0, total = 0;
-  for (std::size_t i = 0; i < std::size_t(at.count); ++i)
+  for (std::size_t i = 0; i < std::size_t(at.count); ++i) {
+    if (!bearing_.has_severed(at.sphere[i])) continue;
     for (const std::int32_t element : elements_.of(std::size_t(at.sphere[i]))) {
       const auto e = std::size_t(element);
       if (!state.axial_severed[e]) continue;
@@ -255,6 +256,7 @@ double CutFront::opening(const Place& at, const StateView& state, Vec3 across) c
       const double crossing = std::abs(dot(across, rest)), weight = std::max(0.0, at.weight[i]) * crossing;
       sum += weight * (std::abs(dot(across, now)) - crossing), total += weight;
     }
+  }
   return total > 0 ? std::max(0.0, sum / total) : 0.0;
 }
 

@@ -29,9 +29,10 @@ struct Sweep {
   Box box{Vec3{}};
 };
 
-/// Where the element p-q crosses one of the sweeps, from 0 at p to 1 at q.
-std::optional<double> crossing(std::span<const Sweep> sweeps, Vec3 p, Vec3 q) {
+/// Where the element p-q crosses one of the sweeps, from 0 at p to 1 at q. `around`: box of all of them.
+std::optional<double> crossing(std::span<const Sweep> sweeps, const Box& around, Vec3 p, Vec3 q) {
   const Box box(p, q);
+  if (!around.meets(box)) return std::nullopt;
   for (const Sweep& s : sweeps) {
     if (!s.box.meets(box)) continue;
     if (const auto hit = meet_sweep(p, q, s.from, s.to, s.from2, s.to2)) return hit->along;
@@ -91,6 +92,7 @@ RestElements::RestElements(const Model& model)
     for (const std::int32_t sphere : {axial.a[e], axial.b[e]})
       elements_[std::size_t(next[std::size_t(sphere)]++)] = std::int32_t(e);
   for (std::size_t i = 0; i < model.sphere_count(); ++i) place_.push_back(model.rest_position[i]);
+  find_longest(axial);
 }
 
 RestElements::RestElements(const Model& model, const TissueDepth& depth, std::optional<std::size_t> only)
@@ -107,6 +109,14 @@ RestElements::RestElements(const Model& model, const TissueDepth& depth, std::op
         place_[i] = under_surface(centre, depth.nearest_on_surface(o, centre), organ.spacing);
     }
   }
+  find_longest(model.axial);
+}
+
+void RestElements::find_longest(const AxialElements& axial) {
+  constexpr double kRounding = 1 + 1e-9;
+  longest_ = 0;
+  for (std::size_t e = 0; e < axial.size(); ++e)
+    longest_ = std::max(longest_, kRounding * norm(place(std::size_t(axial.b[e])) - place(std::size_t(axial.a[e]))));
 }
 
 void find_severed(const Model& model, const RestElements& elements, std::size_t organ, const Front& from,
@@ -125,9 +135,8 @@ void find_severed(const Model& model, const RestElements& elements, std::size_t 
   }
   if (count == 0) return;
   const std::span<const Sweep> sweeps(all.data(), count);
-  // Elements are no longer than the diagonal of a lattice cell, and their ends are within a spacing of the spheres.
   const OrganRange& range = model.organs[organ];
-  const Box near = around->grown(3 * range.spacing);
+  const Box near = around->grown(elements.longest());
   const auto first = std::size_t(range.first), last = first + std::size_t(range.count);
   for (std::size_t i = first; i < last; ++i) {
     const Vec3 p = elements.place(i);
@@ -135,7 +144,7 @@ void find_severed(const Model& model, const RestElements& elements, std::size_t 
     for (const std::int32_t element : elements.of(i)) {
       const auto e = std::size_t(element);
       if (severed[e] != 0 || model.axial.a[e] != std::int32_t(i)) continue;
-      const std::optional<double> along = crossing(sweeps, p, elements.place(std::size_t(model.axial.b[e])));
+      const std::optional<double> along = crossing(sweeps, *around, p, elements.place(std::size_t(model.axial.b[e])));
       if (along) severed[e] = 1, crossings.push_back({element, *along});
     }
   }

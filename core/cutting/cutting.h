@@ -56,6 +56,9 @@ class RestElements {
   /// Where the tissue of a sphere is at rest [m].
   Vec3 place(std::size_t sphere) const { return place_[sphere]; }
 
+  /// No element is longer between such places [m].
+  double longest() const { return longest_; }
+
   /// Rows of Model::axial that begin or end at a sphere.
   std::span<const std::int32_t> of(std::size_t sphere) const {
     const auto begin = std::size_t(first_[sphere]), end = std::size_t(first_[sphere + 1]);
@@ -63,8 +66,11 @@ class RestElements {
   }
 
  private:
+  void find_longest(const AxialElements& axial);
+
   std::vector<std::int32_t> first_, elements_;
   std::vector<Vec3> place_;  ///< (sphere_count)
+  double longest_ = 0;
 };
 
 /// Marks every element of an organ in `severed`, between the places of its spheres, that the front crosses where it is

@@ -8,6 +8,7 @@ namespace {
 
 constexpr SweptQuad kNothingSwept{-1, {}, {}, {}, {}};
 constexpr double kLongestRow = 1e-3, kInLine = 2e-5;  // [m]
+constexpr double kRounding = 1 + 1e-6;                // of squared distances that are compared
 
 /// Whether the surface newly swept goes through a node.
 bool borders(const NewlySwept& newly, std::size_t node) {
@@ -51,6 +52,14 @@ void for_each_near(const State& state, const SweptBoxes& boxes, std::int32_t org
       if (look_at(nearest_in_triangle(rest, q.to, q.to2, q.from2))) return;
     }
   }
+}
+
+/// Squared distance of a place from a box [m^2].
+double squared_gap(const Box& box, Vec3 p) {
+  const auto along = [](double low, double high, double x) { return std::max({low - x, x - high, 0.0}); };
+  const double x = along(box.low.x, box.high.x, p.x), y = along(box.low.y, box.high.y, p.y),
+               z = along(box.low.z, box.high.z, p.z);
+  return x * x + y * y + z * z;
 }
 
 double squared_distance(Vec3 p, const SweptQuad& q) {
@@ -238,7 +247,9 @@ double SweptIndex::distance(const State& state, std::int32_t organ, Vec3 rest, d
   const double enough2 = enough * enough;
   const auto look_at = [&](std::size_t row, std::size_t node) {
     if (state.swept_organ[row * kEdgeNodes + node] != organ + 1) return;
-    least2 = std::min(least2, squared_distance(rest, swept_quad(state, row, node)));
+    const SweptQuad quad = swept_quad(state, row, node);
+    // Its box is mostly farther than what was found.
+    if (squared_gap(box_of(quad), rest) <= kRounding * least2) least2 = std::min(least2, squared_distance(rest, quad));
   };
   const std::int64_t bucket = bucket_of(rest);
   if (bucket >= 0)
