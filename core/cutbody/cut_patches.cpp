@@ -150,8 +150,7 @@ void CutPatches::follow(std::shared_ptr<const State> state) {
   prepare();
   parts_->seen = std::move(state);
   (void)parts_->grid.update(*parts_->seen);
-  const CutGrid::Node extent = parts_->grid.extent();
-  parts_->binding.update({{0, 0, 0}, extent});
+  parts_->binding.update(parts_->grid.take_changed());
   cover();
 }
 
