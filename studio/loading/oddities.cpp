@@ -5,7 +5,11 @@
 #include <cstdio>
 #include <numbers>
 #include <string>
+#include <vector>
 
+#include "core/cutting/rest_map.h"
+#include "core/cutting/tissue_depth.h"
+#include "core/model/box.h"
 #include "studio/loading/standing.h"
 
 namespace ctpm::loading {
@@ -18,6 +22,9 @@ std::string number(double value) {
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
 }
+
+/// Part of an organ's spheres that may lie in another one: scans of neighbours overlap a little (our choice).
+constexpr double kOverlap = 0.02;
 
 /// Distance from a point to the nearest sphere, and the spacing of that sphere's organ.
 struct Near {
@@ -45,6 +52,19 @@ class Look {
     for (std::size_t i = 0; i < spec.cameras.size(); ++i) look_through(item("/cameras", i), spec.cameras[i]);
   }
 
+  /// Organs that touch lie beside each other, and overlap by some spheres at most; more are tissue at the same place
+  /// twice.
+  void at_overlaps() {
+    for (std::size_t i = 0; i < model_.organs.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const std::int32_t own = count_inside(i, j), other = count_inside(j, i);
+        const double own_share = double(own) / model_.organs[i].count, share = double(other) / model_.organs[j].count;
+        if (std::max(own_share, share) < kOverlap) continue;
+        if (own_share >= share) warn_of_overlap(i, j, own);
+        if (own_share < share) warn_of_overlap(j, i, other);
+      }
+  }
+
   void at_anchors(const Standing& standing) {
     const scenes::SceneSpec& spec = scene_.scene.spec;
     const bool can_rest = !spec.obstacles.empty() || spec.organs_meet;
@@ -68,6 +88,33 @@ class Look {
   Errors warnings;
 
  private:
+  /// Spheres of an organ that lie inside the surface of another one at rest, by 2.2 mm or more.
+  std::int32_t count_inside(std::size_t organ, std::size_t other) {
+    const auto has_surface = [&](std::size_t o) {
+      return o < model_.surfaces.size() && !model_.surfaces[o].triangle.empty();
+    };
+    if (!has_surface(other)) return 0;
+    Box box(model_.surfaces[other].vertex.front());
+    for (const Vec3& vertex : model_.surfaces[other].vertex) box.add(vertex);
+    std::vector<Vec3> near;
+    const OrganRange& range = model_.organs[organ];
+    for (std::int32_t i = range.first; i < range.first + range.count; ++i)
+      if (const Vec3 p = model_.rest_position[std::size_t(i)]; box.meets(Box(p))) near.push_back(p);
+    if (near.empty()) return 0;
+    const cutting::RestMap map(model_);
+    const cutting::TissueDepth depth(model_, map, other);
+    return std::int32_t(std::count_if(near.begin(), near.end(),
+                                      [&](Vec3 p) { return depth.at(other, p) >= cutting::TissueDepth::kBand; }));
+  }
+
+  void warn_of_overlap(std::size_t organ, std::size_t other, std::int32_t count) {
+    const auto& organs = scene_.scene.spec.organs;
+    warn(item("/organs", organ),
+         "lies in " + organs[other].name + " with " + std::to_string(count) + " of its " +
+             std::to_string(model_.organs[organ].count) + " spheres",
+         "move it beside " + organs[other].name);
+  }
+
   void warn(const std::string& at, const std::string& message, const std::string& hint) {
     warnings.push_back(scene_.scene.places.error_at(at, message, hint));
   }
@@ -105,9 +152,15 @@ class Look {
 
 }  // namespace
 
+Errors find_odd_places(const LoadedScene& scene) {
+  Look look(scene);
+  look.at_points(), look.at_overlaps();
+  return look.warnings;
+}
+
 std::optional<Errors> find_oddities(const LoadedScene& scene, const std::function<bool()>& should_stop) {
   Look look(scene);
-  look.at_points();
+  look.at_points(), look.at_overlaps();
   const std::optional<Standing> standing = settle_scene(scene.scene.spec, scene.built.model, {}, should_stop);
   if (!standing) return std::nullopt;
   if (!standing->organ.empty()) look.at_anchors(*standing);

@@ -8,9 +8,12 @@
 
 namespace ctpm::loading {
 
-/// What is odd about a scene although it can be built, each with its place: an organ that sags by more than a tenth of
-/// its size while it settles; one that is held everywhere, or nowhere with nothing to rest on; a probe, a load or a
-/// camera far from all tissue. Settles the scene. None if `should_stop` ended it.
+/// What is odd about where the things of a scene are, although it can be built, each with its place: a probe, a load or
+/// a camera far from all tissue; an organ that lies in another one.
+Errors find_odd_places(const LoadedScene& scene);
+
+/// All that is odd: odd places; an organ that sags by more than a tenth of its size while it settles; one that is held
+/// everywhere, or nowhere with nothing to rest on. Settles the scene. None if `should_stop` ended it.
 std::optional<Errors> find_oddities(const LoadedScene& scene, const std::function<bool()>& should_stop = {});
 
 }  // namespace ctpm::loading

@@ -6,6 +6,7 @@
 #include "core/model/state.h"
 #include "studio/fidelity/scene.h"
 #include "studio/loading/loaded_scene.h"
+#include "studio/loading/oddities.h"
 #include "studio/loading/tick_time.h"
 #include "studio/server/call_table.h"
 #include "studio/server/picture.h"
@@ -75,10 +76,11 @@ Result<std::string> show_scene(Parameters& parameters, const CallContext& contex
   context.desk->outbox().send_bytes(spheres_message(model, stage));
   context.desk->outbox().show(maker.make(rest_state(model), {}));
   context.desk->keep(stage, kept);
+  Errors warnings = scene.scene.warnings;
+  for (Error& odd : loading::find_odd_places(scene)) warnings.push_back(std::move(odd));
   return "{\"view\": " + view_json(scene.scene.spec, model) + ", \"organs\": " + organs.text() +
          ", \"spheres\": " + std::to_string(model.sphere_count()) +
-         ", \"elements\": " + std::to_string(model.element_count()) +
-         ", \"warnings\": " + errors_json(scene.scene.warnings) + "}";
+         ", \"elements\": " + std::to_string(model.element_count()) + ", \"warnings\": " + errors_json(warnings) + "}";
 }
 
 /// The time of a tick of the scene that a stage shows.

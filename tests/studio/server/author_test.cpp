@@ -50,6 +50,17 @@ const std::string* last_of(const std::vector<std::string>& messages, std::uint32
   return found;
 }
 
+TEST_F(AuthorTest, WhatLiesAtAnOddPlaceIsWarnedOfAsCheckDoes) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  text_["probes"] = {{{"name", "far"}, {"at_mm", {0, 0, 900}}}};
+  const auto shown = client.call("scene.show", {{"path", "kidney.json"}, {"stage", kStage}, {"text", text_.dump(1)}});
+  ASSERT_TRUE(shown.contains("result")) << shown.dump();
+  const auto& warnings = shown["result"]["warnings"];
+  ASSERT_EQ(warnings.size(), 1u) << warnings.dump();
+  EXPECT_NE(warnings[0].dump().find("from the nearest tissue"), std::string::npos) << warnings.dump();
+}
+
 TEST_F(AuthorTest, OnlyScenesAreListedAsScenes) {
   const auto write = [&](const char* name, const std::string& content) {
     std::ofstream(folder_.path() / name) << content;

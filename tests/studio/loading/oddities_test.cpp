@@ -1,0 +1,62 @@
+// Where the things of a scene are, and what is odd about it.
+
+#include "studio/loading/oddities.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace ctpm {
+namespace {
+
+/// Two shipped kidneys, the second one moved along y by so much [mm], and `keys` of the scene.
+Result<loading::LoadedScene> two_kidneys(double along, const std::string& keys = "") {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "ctpm_oddities";
+  std::filesystem::create_directories(folder);
+  std::filesystem::copy_file(CTPM_SOURCE_DIR "/scenes/organs/kidney.obj", folder / "kidney.obj",
+                             std::filesystem::copy_options::overwrite_existing);
+  const auto organ = [](const std::string& name, double at) {
+    return R"({"name": ")" + name +
+           R"(", "mesh": "kidney.obj", "fill": {"radius_mm": 4}, "material": {"preset": "kidney"}, "at_mm": [0, )" +
+           std::to_string(at) + R"(, 0], "anchors": [{"lowest_mm": 8}]})";
+  };
+  std::ofstream(folder / "scene.json") << R"({"format": "ctpm-scene", "version": 1, "name": "s", "organs": [)"
+                                       << organ("left", 0) << ",\n"
+                                       << organ("right", along) << "]" << keys << "}";
+  return loading::load_whole_scene((folder / "scene.json").string());
+}
+
+TEST(Oddities, AnOrganInAnotherOneIsOneAndOneBesideItIsNot) {
+  const auto beside = two_kidneys(200), in = two_kidneys(20);
+  ASSERT_TRUE(beside && in);
+  EXPECT_TRUE(loading::find_odd_places(*beside).empty());
+  const Errors odd = loading::find_odd_places(*in);
+  ASSERT_EQ(odd.size(), 1u);
+  // Of the two it is the one that has more of its spheres in the other.
+  EXPECT_NE(odd[0].where.find("scene.json:1:64"), std::string::npos) << odd[0].where << " is not the first organ";
+  EXPECT_NE(odd[0].message.find("/organs/0: lies in right with "), std::string::npos) << odd[0].message;
+}
+
+TEST(Oddities, OrgansMayTouch) {
+  // Their surfaces overlap by half a millimetre.
+  const auto alone = two_kidneys(1000);
+  ASSERT_TRUE(alone);
+  double least = INFINITY, most = -INFINITY;
+  for (const Vec3& p : alone->organs[0].surface.vertex) least = std::min(least, p.y), most = std::max(most, p.y);
+  const auto touching = two_kidneys(1e3 * (most - least) - 0.5);
+  ASSERT_TRUE(touching);
+  EXPECT_TRUE(loading::find_odd_places(*touching).empty());
+}
+
+TEST(Oddities, OfPlacesAreFoundWithoutSettling) {
+  const auto far = two_kidneys(200, R"(, "probes": [{"name": "far", "at_mm": [0, 0, 900]}])");
+  ASSERT_TRUE(far);
+  const Errors odd = loading::find_odd_places(*far);
+  ASSERT_EQ(odd.size(), 1u);
+  EXPECT_NE(odd[0].message.find("from the nearest tissue"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ctpm
