@@ -377,8 +377,8 @@ step("a program that is killed while it writes leaves the scene whole, and nothi
   const other = await page.context().newPage();
   await other.goto(address);
   await page.waitForSelector(".author .editor-frame");
+  await other.close(); // a page behind another one is not drawn
   await settled();
-  await other.close();
   assert.equal(await text(), longer);
   await page.keyboard.press("Control+s");
   await untilSaved();

@@ -1,7 +1,7 @@
 // What the page shows, held against what the commands say: shown_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { networkInterfaces } from "node:os";
 import { after, before } from "node:test";
@@ -9,12 +9,13 @@ import { openDevice } from "./igtl.mjs";
 import { chooseDevice, ctpm, ctpmBeside, makeFolder, openStudio, paths, picture, step, takeUp } from "./browser.mjs";
 import { cross, dot, length, minus, scaled, unit } from "./vectors.mjs";
 
-const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm";
+const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm", kSame = "kidney-same.ctpm";
 let folder, studio, page;
 let shown = null; // newest frame of a training
 
 before(async () => {
   folder = makeFolder("kidney.json", kExpert, kClumsy);
+  copyFileSync(join(folder, kExpert), join(folder, kSame));
   studio = await openStudio(folder);
   page = studio.page;
   page.on("websocket", (socket) => socket.on("framereceived", ({ payload }) => {
@@ -100,6 +101,9 @@ step("compare and verify say how far they are, in numbers, and can be cancelled"
     new MutationObserver(() => globalThis.said.add(document.querySelector(".working")?.textContent ?? "")).observe(document.body, { subtree: true, childList: true, characterData: true });
   });
   const saidOf = async (what) => (await page.evaluate(() => [...globalThis.said])).map((text) => new RegExp(`${what} (\\d+) %`).exec(text)?.[1]).filter((share) => share > 0 && share < 100);
+  // A short one with itself.
+  await page.locator("#panel select").selectOption(kSame);
+  await page.waitForSelector(`.captions .second:has-text("${kSame}")`);
   await page.click("#panel button:text-is('path')"); // which is known once they are compared
   await page.waitForSelector("#panel table");
   await page.waitForSelector("#panel button[aria-pressed=true]:text-is('path')");
