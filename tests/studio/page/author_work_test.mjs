@@ -298,7 +298,24 @@ step("import, filling, tools and anchors are worked by the keyboard alone", asyn
   assert.deepEqual(await seriousFindings(page), []);
   await page.locator(".view > canvas").focus();
   await page.keyboard.press("Shift+Space");
-  assert.ok((await anchors()).length < had + painted.length);
+  const left = await anchors();
+  assert.ok(left.length < had + painted.length);
+  // Where nothing is painted nothing is erased, and a brush that holds no sphere paints none: both are said.
+  await page.keyboard.press("Shift+Space");
+  await page.waitForSelector(".brush-says:has-text('There is no painted anchor here')");
+  assert.deepEqual(await anchors(), left);
+  const size = page.locator(".brush input"), least = Number(await size.getAttribute("min"));
+  await tabTo(size, "Shift+Tab");
+  await page.keyboard.press("Home");
+  assert.ok(Math.abs((await size.inputValue()) - least) < 1e-9);
+  await page.locator(".view > canvas").focus();
+  for (let i = 0, before = null; i < 30 && JSON.stringify(before) !== JSON.stringify(await anchors()); ++i) {
+    before = await anchors();
+    await page.keyboard.press("ArrowUp");
+    await page.keyboard.press("Space");
+  }
+  await page.waitForSelector(".brush-says:has-text('The brush holds no sphere here')");
+  await picture(page, "author-brush-says");
   await page.keyboard.press("Escape");
   assert.equal(await button("paint", ".objects").getAttribute("aria-pressed"), "false");
   await page.keyboard.press("Control+s");
