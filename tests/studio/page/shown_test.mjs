@@ -35,17 +35,17 @@ step("there is no network, no display, and no program that the studio could call
   assert.deepEqual(Object.keys(networkInterfaces()), ["lo"]);
 });
 
-/** Places in a picture whose colour is as asked: a script of red, green, blue. */
-function placesOf(bytes, isSuch) {
-  return page.evaluate(async ([encoded, script]) => {
+/** Places in a picture whose colour is as asked: a script of red, green, blue. `endsOfRows`: the first and the last one of each row. */
+function placesOf(bytes, isSuch, endsOfRows = false) {
+  return page.evaluate(async ([encoded, script, endsOfRows]) => {
     const isSuch = new Function("r", "g", "b", `return ${script}`);
     const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(encoded), (c) => c.charCodeAt(0))]));
     const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
     context.drawImage(bitmap, 0, 0);
     const { data, width } = context.getImageData(0, 0, bitmap.width, bitmap.height), places = [];
     for (let i = 0; i < data.length; i += 4) if (isSuch(data[i], data[i + 1], data[i + 2])) places.push([(i / 4) % width, Math.floor(i / 4 / width)]);
-    return places;
-  }, [bytes.toString("base64"), isSuch]);
+    return endsOfRows ? places.filter(([, y], i) => places[i - 1]?.[1] !== y || places[i + 1]?.[1] !== y) : places;
+  }, [bytes.toString("base64"), isSuch, endsOfRows]);
 }
 
 /** What `replay` writes of each tick. */
@@ -170,7 +170,7 @@ step("the surface that the page draws covers what the exported picture of the sa
   // What lies between the first and the last tissue of a row: what shines on it, and the arrow, count as tissue.
   const silhouette = async (bytes) => {
     const rows = new Map();
-    for (const [x, y] of await placesOf(bytes, "r > 45 && r > 1.5 * g && r > 1.5 * b")) {
+    for (const [x, y] of await placesOf(bytes, "r > 45 && r > 1.5 * g && r > 1.5 * b", true)) {
       const [from, to] = rows.get(y) ?? [x, x];
       rows.set(y, [Math.min(from, x), Math.max(to, x)]);
     }
