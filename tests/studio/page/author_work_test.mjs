@@ -69,14 +69,22 @@ step("the slider is dragged with the mouse: one step, its numbers are told, and 
   });
   const slider = page.locator("#panel .slider input").first(), { x, y, width, height } = await slider.boundingBox();
   const share = (await slider.inputValue()) / 200, thumb = x + 8 + share * (width - 16);
-  await drag({ x: thumb, y: y + height / 2 }, { x: x + 0.26 * width - thumb, y: 0 });
+  const isFilling = (line) => /^filling [1-9]\d* %$/.test(line), said = () => page.evaluate(() => [...globalThis.said]);
+  // Where pictures come rarely, a filling may be over before there is one of it: then it is filled once more.
+  for (let i = 0; i < 5; ++i) {
+    await drag({ x: thumb, y: y + height / 2 }, { x: x + 0.26 * width - thumb, y: 0 });
+    await settled();
+    if ((await said()).some(isFilling)) break;
+    await page.keyboard.press("Control+z");
+    await settled();
+  }
+  assert.ok((await said()).some(isFilling), (await said()).join("; "));
   const dragged = await fill();
   assert.ok(dragged.radius_mm < 2 && dragged.radius_mm > 0.8, `${dragged.radius_mm} mm`);
   assert.equal(dragged.gap_mm, dragged.radius_mm);
   await page.waitForFunction(() => [...globalThis.said].some((line) => /^measuring, \d+ of at most \d+ ticks$/.test(line)));
-  const said = await page.evaluate(() => (globalThis.watching.disconnect(), [...globalThis.said]));
-  assert.ok(said.some((line) => /^filling [1-9]\d* %$/.test(line)), said.join("; "));
-  assert.ok(!said.some((line) => line.includes("…")), "nothing works without a number");
+  await page.evaluate(() => globalThis.watching.disconnect());
+  assert.ok(!(await said()).some((line) => line.includes("…")), "nothing works without a number");
   await settled();
   await picture(page, "author-slider");
   assert.ok((await reading(page, "spheres")) > 8 * spheres);
