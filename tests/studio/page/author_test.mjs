@@ -370,8 +370,8 @@ step("nothing is lost when the program is killed while a scene is edited", async
   const other = await page.context().newPage();
   await other.goto(await studio.startAgain());
   await page.waitForSelector(".author .editor-frame");
+  await other.close(); // a page behind another one is not drawn
   await settled();
-  await other.close();
   assert.equal(await text(), changed);
   await page.keyboard.press("Control+z");
   assert.notEqual(await text(), changed);

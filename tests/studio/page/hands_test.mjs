@@ -69,21 +69,8 @@ step("the expert's ghost is ahead, or at the same place of its path", async () =
   const far = poses.map((pose) => (pose[0] < 0 ? Infinity : Math.hypot(...minus(placeOf(pose), hand))));
   const here = far.indexOf(Math.min(...far)), ahead = here + Math.round(0.25 / interval_s);
   assert.ok(here > first && far[here] < 1e-3 && far[ahead] > 5e-3, `${here}: ${far[here]}, ${ahead}: ${far[ahead]}`);
-  const choose = async (label, far) => {
-    await page.locator("aside .field:has-text('the ghost is') select").selectOption({ label });
-    const isNear = (mm) => Math.abs(mm - 1e3 * far) < 1.2; // of a pose or two later: the ghost never goes back
-    const shown = await until(() => reading(page, "away from your tool"), isNear);
-    assert.ok(isNear(shown), `${label}: ${shown} mm, ${1e3 * far}`);
-    await page.waitForTimeout(200); // until it is drawn
-    return canvas.screenshot();
-  };
-  const same = await choose("where you are on its path", far[here]);
-  const later = await choose("a little ahead", far[ahead]);
-  await picture(page, "train-ghost");
-  await page.locator("aside .field:has-text('expert') select").selectOption("");
-  const none = await until(() => canvas.screenshot(), (bytes) => !bytes.equals(later));
-  // What the ghost changes in the picture is where the expert's tool was: lower, by what the way between the poses is in pixels.
-  const rowOf = (shown) => page.evaluate(async ([a, b]) => {
+  // What differs between two pictures.
+  const between = (shown, other) => page.evaluate(async ([a, b]) => {
     const pixels = async (bytes) => {
       const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))]));
       const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
@@ -95,8 +82,32 @@ step("the expert's ghost is ahead, or at the same place of its path", async () =
     for (let i = 0; i < one.data.length; i += 4)
       if (Math.abs(one.data[i] - other.data[i]) + Math.abs(one.data[i + 2] - other.data[i + 2]) > 20) ++count, lowest = Math.floor(i / 4 / one.width);
     return { lowest, count };
-  }, [shown, none].map((bytes) => bytes.toString("base64")));
-  const [atSame, atLater] = [await rowOf(same), await rowOf(later)];
+  }, [shown, other].map((bytes) => bytes.toString("base64")));
+  /** The next picture in which the ghost is elsewhere, or gone. */
+  const drawnAfter = async (before) => {
+    const { shown } = await until(async () => {
+      const shown = await canvas.screenshot();
+      return { shown, count: (await between(shown, before)).count };
+    }, ({ count }) => count > 200);
+    return shown;
+  };
+  const choose = async (label, far) => {
+    await page.locator("aside .field:has-text('the ghost is') select").selectOption({ label });
+    const isNear = (mm) => Math.abs(mm - 1e3 * far) < 1.2; // of a pose or two later: the ghost never goes back
+    const shown = await until(() => reading(page, "away from your tool"), isNear);
+    assert.ok(isNear(shown), `${label}: ${shown} mm, ${1e3 * far}`);
+  };
+  await page.waitForTimeout(200); // until the hand is drawn where it rests
+  const rests = await canvas.screenshot();
+  await choose("where you are on its path", far[here]);
+  const same = await drawnAfter(rests);
+  await choose("a little ahead", far[ahead]);
+  const later = await drawnAfter(same);
+  await picture(page, "train-ghost");
+  await page.locator("aside .field:has-text('expert') select").selectOption("");
+  const none = await drawnAfter(later);
+  // What the ghost changes in the picture is where the expert's tool was: lower, by what the way between the poses is in pixels.
+  const [atSame, atLater] = [await between(same, none), await between(later, none)];
   assert.ok(atSame.count > 200 && atLater.count > 200, `${atSame.count} and ${atLater.count} pixels`);
   assert.ok(atLater.lowest > atSame.lowest + 5, `${atSame.lowest} and ${atLater.lowest}`);
   await end(page);

@@ -51,6 +51,7 @@ step("from a pair of sessions to a video of its worst moment", async () => {
   const [, shown] = / ([-\d.]+) s$/.exec(await page.locator(".captions .first").innerText());
   await page.click("#tab-export");
   await page.locator('#panel .field:has-text("file in the folder") input').fill("worst.avi");
+  await page.locator('#panel .field:has-text("pictures a second") input').fill("10");
   await page.click("#panel button:has-text('1 s before')");
   await page.click("#panel button.main");
   await page.waitForSelector("#panel .good:has-text('worst.avi')");
@@ -196,8 +197,8 @@ step("an export is the one that the shown command makes, and can be cancelled", 
   };
   // Two sessions beside each other; the command says no more than what was chosen.
   await page.click("#tab-compare");
-  await page.locator("#panel select").selectOption(kClumsy);
-  await page.waitForSelector(".captions .second");
+  await page.locator("#panel select").selectOption(kClumsy); // once more: the link brought both together by hand
+  await page.waitForSelector("#panel button[aria-pressed=true]:text-is('first contact')");
   await page.click("#tab-export");
   assert.match(await page.locator("#panel .command code").innerText(), /--align contact/);
   assert.doesNotMatch(await page.locator("#panel .command code").innerText(), /--(overlay|slow-at|fps|size|speed|from-s|to-s)/);
@@ -214,9 +215,10 @@ step("an export is the one that the shown command makes, and can be cancelled", 
   await field("file in the folder").fill("both.avi");
   await field("from [s]").fill("2.2");
   await field("to [s]").fill("2.5");
+  await field("pictures a second").fill("10");
   await choose("bring both together", "cut");
   await choose("overlay", "small");
-  await makesWhatItShows("both", ["--align cut", "--overlay small", `--beside ${kClumsy}`]);
+  await makesWhatItShows("both", ["--align cut", "--overlay small", "--fps 10", `--beside ${kClumsy}`]);
   await picture(page, "review-export");
   // One of them.
   await page.click("#tab-compare");

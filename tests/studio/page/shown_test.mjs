@@ -1,7 +1,7 @@
 // What the page shows, held against what the commands say: shown_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { networkInterfaces } from "node:os";
 import { after, before } from "node:test";
@@ -9,12 +9,13 @@ import { openDevice } from "./igtl.mjs";
 import { chooseDevice, ctpm, ctpmBeside, makeFolder, openStudio, paths, picture, step, takeUp } from "./browser.mjs";
 import { cross, dot, length, minus, scaled, unit } from "./vectors.mjs";
 
-const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm";
+const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm", kSame = "kidney-same.ctpm";
 let folder, studio, page;
 let shown = null; // newest frame of a training
 
 before(async () => {
   folder = makeFolder("kidney.json", kExpert, kClumsy);
+  copyFileSync(join(folder, kExpert), join(folder, kSame));
   studio = await openStudio(folder);
   page = studio.page;
   page.on("websocket", (socket) => socket.on("framereceived", ({ payload }) => {
@@ -34,17 +35,17 @@ step("there is no network, no display, and no program that the studio could call
   assert.deepEqual(Object.keys(networkInterfaces()), ["lo"]);
 });
 
-/** Places in a picture whose colour is as asked: a script of red, green, blue. */
-function placesOf(bytes, isSuch) {
-  return page.evaluate(async ([encoded, script]) => {
+/** Places in a picture whose colour is as asked: a script of red, green, blue. `endsOfRows`: the first and the last one of each row. */
+function placesOf(bytes, isSuch, endsOfRows = false) {
+  return page.evaluate(async ([encoded, script, endsOfRows]) => {
     const isSuch = new Function("r", "g", "b", `return ${script}`);
     const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(encoded), (c) => c.charCodeAt(0))]));
     const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
     context.drawImage(bitmap, 0, 0);
     const { data, width } = context.getImageData(0, 0, bitmap.width, bitmap.height), places = [];
     for (let i = 0; i < data.length; i += 4) if (isSuch(data[i], data[i + 1], data[i + 2])) places.push([(i / 4) % width, Math.floor(i / 4 / width)]);
-    return places;
-  }, [bytes.toString("base64"), isSuch]);
+    return endsOfRows ? places.filter(([, y], i) => places[i - 1]?.[1] !== y || places[i + 1]?.[1] !== y) : places;
+  }, [bytes.toString("base64"), isSuch, endsOfRows]);
 }
 
 /** What `replay` writes of each tick. */
@@ -100,6 +101,9 @@ step("compare and verify say how far they are, in numbers, and can be cancelled"
     new MutationObserver(() => globalThis.said.add(document.querySelector(".working")?.textContent ?? "")).observe(document.body, { subtree: true, childList: true, characterData: true });
   });
   const saidOf = async (what) => (await page.evaluate(() => [...globalThis.said])).map((text) => new RegExp(`${what} (\\d+) %`).exec(text)?.[1]).filter((share) => share > 0 && share < 100);
+  // A short one with itself.
+  await page.locator("#panel select").selectOption(kSame);
+  await page.waitForSelector(`.captions .second:has-text("${kSame}")`);
   await page.click("#panel button:text-is('path')"); // which is known once they are compared
   await page.waitForSelector("#panel table");
   await page.waitForSelector("#panel button[aria-pressed=true]:text-is('path')");
@@ -166,7 +170,7 @@ step("the surface that the page draws covers what the exported picture of the sa
   // What lies between the first and the last tissue of a row: what shines on it, and the arrow, count as tissue.
   const silhouette = async (bytes) => {
     const rows = new Map();
-    for (const [x, y] of await placesOf(bytes, "r > 45 && r > 1.5 * g && r > 1.5 * b")) {
+    for (const [x, y] of await placesOf(bytes, "r > 45 && r > 1.5 * g && r > 1.5 * b", true)) {
       const [from, to] = rows.get(y) ?? [x, x];
       rows.set(y, [Math.min(from, x), Math.max(to, x)]);
     }
