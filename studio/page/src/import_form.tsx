@@ -31,7 +31,7 @@ export interface Imported {
 }
 
 const kUnits: Record<string, string> = { "0.001": "mm", "0.01": "cm", "0.1": "dm", "1": "m", "0.0254": "in" };
-const kGap = 0.01; // between an organ that is added and the others [m]
+const kGap = 0.1; // between an organ that is added and the others, of its size, as the command leaves it
 const kImportsCamera = "front"; // as an import names the camera that it places
 const kGeneric = "soft-tissue"; // what an organ of no name is taken as
 
@@ -84,7 +84,8 @@ async function addOrgan(connection: Connection, open: AuthorScene, imported: Imp
   const { text } = await connection.call<{ text: string }>("scene.read", { path: imported.scene });
   const organ = findJson(parseJson(text), ["organs", 0]) as { [key: string]: Json };
   const doc = open.doc!, organs = listOf(doc.value, "organs"), view = open.shown?.view;
-  const at = view ? new three.Vector3(view.most[0] + kGap - imported.least[0], (view.least[1] + view.most[1] - imported.least[1] - imported.most[1]) / 2, view.least[2] - imported.least[2])
+  const size = new three.Vector3(...imported.most).distanceTo(new three.Vector3(...imported.least));
+  const at = view ? new three.Vector3(view.most[0] + kGap * size - imported.least[0], (view.least[1] + view.most[1] - imported.least[1] - imported.most[1]) / 2, view.least[2] - imported.least[2])
     : new three.Vector3();
   const { name, mesh, at_mm: _, ...rest } = organ;
   const values: [JSONPath, Json][] = [[["organs", organs.length], { name: freeName(organs, String(name)), mesh, at_mm: mmVector(at), ...rest }]];
@@ -194,8 +195,9 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
       {refused !== null && !progress && (
         <button type="button" class="main" onClick={() => void start(String(refused))}>Close holes up to {refused} mm and import</button>
       )}
+      {isAdded && <p class="hint">The command writes the organ into the file at once. Here it is added to the text, which you save, and {target} stays a scene of its own.</p>}
       <ShownCommand text={command("import", file.name, "--organ", organ, ...(unit ? ["--unit", kUnits[unit]] : []),
-        ...(radius ? ["--radius-mm", radius] : []), ...(hole ? ["--largest-hole-mm", hole] : []), "-o", target)} />
+        ...(radius ? ["--radius-mm", radius] : []), ...(hole ? ["--largest-hole-mm", hole] : []), ...(isAdded && open?.doc ? ["--into", open.doc.path, "--beside"] : ["-o", target]))} />
     </Section>
   );
 }

@@ -1,6 +1,6 @@
 // An author in a browser: author_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
@@ -266,10 +266,21 @@ step("a second mesh becomes an organ of the scene, which is moved by its handle"
   const mesh = readFileSync(join(paths.source, "scenes", "organs", "kidney.obj"));
   await page.setInputFiles(".pick input", { name: "other-kidney.obj", mimeType: "model/obj", buffer: mesh });
   await page.click("aside label:has-text('an organ of')");
+  const shown = await page.locator("aside .command code").innerText(), other = makeFolder();
   await button("Import", "aside").click();
   await page.waitForSelector("aside .good:has-text('spheres')");
   await settled();
   const { organs, cameras } = await scene();
+  // The command that it showed adds the same organ at the same place.
+  for (const file of [kScene, ...JSON.parse(before).organs.map(({ mesh }) => mesh), "other-kidney.obj"]) cpSync(join(folder, file), join(other, file));
+  writeFileSync(join(other, kScene), before);
+  const done = ctpm(other, ...shown.split(" ").slice(1), "--radius-mm", String(organs[1].fill.radius_mm));
+  assert.equal(done.code, 0, `${shown}: ${done.err}`);
+  const added = JSON.parse(readFileSync(join(other, kScene), "utf8")).organs;
+  assert.deepEqual(added.map(({ name }) => name), ["kidney", "kidney-2"]);
+  for (const [i, at] of added[1].at_mm.entries()) assert.ok(Math.abs(at - organs[1].at_mm[i]) < 1, `${added[1].at_mm} and ${organs[1].at_mm}`);
+  assert.deepEqual({ ...added[1].material, fitted_for: 0 }, { ...organs[1].material, fitted_for: 0 });
+  rmSync(other, { recursive: true });
   assert.deepEqual(organs.map(({ name }) => name), ["kidney", "kidney-2"]); // what they are, not what their files are called
   // The camera that the import left sees both, as a picture of the command does, and so does Author.
   const [was, ...others] = JSON.parse(before).cameras;
