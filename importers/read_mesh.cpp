@@ -9,6 +9,7 @@
 
 #include "importers/assimp_reader.h"
 #include "importers/child_process.h"
+#include "importers/formats.h"
 #include "importers/label_map.h"
 #include "importers/mesh.h"
 #include "importers/mesh_file.h"
@@ -24,6 +25,13 @@ std::string suffix_of(const std::string& path) {
   std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   if (suffix == "gz" && is_label_map(path)) return "nii";
   return suffix;
+}
+
+std::vector<std::string> readable_endings() {
+  std::vector<std::string> endings = {".stl", ".obj", ".ply", ".off", ".gltf", ".glb", ".dae",
+                                      ".fbx", ".3ds", ".3mf", ".vtk", ".vtu",  ".msh"};
+  if (reads_label_maps()) endings.insert(endings.end(), {".nii", ".nii.gz", ".nrrd"});
+  return endings;
 }
 
 namespace {
@@ -92,8 +100,11 @@ void send_refusal(const Error& error, const Send& send) {
 
 namespace {
 
-constexpr const char* kKnownFormats =
-    "OBJ, STL, PLY, OFF, glTF, GLB, 3DS, DAE, FBX, VTK, VTU, MSH, NIfTI and NRRD files are read, among others";
+std::string known_formats() {
+  std::string text;
+  for (const std::string& ending : readable_endings()) text += (text.empty() ? "" : ", ") + ending;
+  return text + " files are read, among others";
+}
 
 std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t kMostShown = 40;
@@ -180,7 +191,7 @@ Result<RawMesh> read_mesh(const std::string& path, const ReadOptions& options) {
   }
   if (kind == wire::Kind::failed) {
     if (!reader.get_text(text)) return broken;
-    return Error{path, "is not a mesh that can be read: " + text, kKnownFormats};
+    return Error{path, "is not a mesh that can be read: " + text, known_formats()};
   }
   if (!get_names(reader, mesh.parts)) return broken;
   if (kind == wire::Kind::no_such_part)

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
+#include "importers/formats.h"
 #include "recordings/byte_hash.h"
 #include "scenes/presets.h"
 #include "scenes/scene_file.h"
@@ -74,6 +76,7 @@ Result<std::string> import_mesh(Parameters& parameters, const CallContext& conte
   request.sphere_radius = parameters.number_if("radius_m", 1e-5, 0.1);
   request.gap = parameters.number_if("gap_m", 0, 0.1);
   request.largest_hole = parameters.number_if("largest_hole_m", 0, 10);
+  request.names = parameters.texts_if("names");
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
   const Result<std::string> file = context.folder.find(mesh), place = place_of_scene(context.folder, scene);
   for (const auto* path : {&file, &place})
@@ -86,16 +89,20 @@ Result<std::string> import_mesh(Parameters& parameters, const CallContext& conte
   const Result<authoring::ImportOutcome> outcome = authoring::import_scene(request);
   if (!outcome) return outcome.errors();
   output::JsonWriter json;
-  // Of several organs, the page shows the largest one's figures and all findings.
+  // Of several organs, the page shows the largest one's figures and all findings, and has the box around all.
   const authoring::ImportedPart& organ = outcome->organs.front();
   std::string reports;
   std::vector<importers::Finding> findings;
   std::size_t anchored = 0;
   std::int64_t spheres = 0;
+  Vec3 least = organ.report.box_least, most = organ.report.box_most;
   for (const authoring::ImportedPart& one : outcome->organs) {
     reports += importers::to_text(one.report);
     findings.insert(findings.end(), one.report.findings.begin(), one.report.findings.end());
     anchored += one.anchored, spheres += one.report.fill.spheres;
+    const Vec3 low = one.report.box_least, high = one.report.box_most;
+    least = {std::min(least.x, low.x), std::min(least.y, low.y), std::min(least.z, low.z)};
+    most = {std::max(most.x, high.x), std::max(most.y, high.y), std::max(most.z, high.z)};
   }
   json.begin_object()
       .member("scene", std::string_view(scene))
@@ -107,14 +114,22 @@ Result<std::string> import_mesh(Parameters& parameters, const CallContext& conte
   if (organ.stiffness_scale) json.member("stiffness_scale", *organ.stiffness_scale);
   json.member("fit_problem", std::string_view(organ.fit_problem)).key("findings");
   write_findings(json, findings);
-  json.key("least"), write_vector(json, organ.report.box_least);
-  json.key("most"), write_vector(json, organ.report.box_most);
+  json.key("least"), write_vector(json, least);
+  json.key("most"), write_vector(json, most);
   return json.end_object().text();
 }
 
 Result<std::string> show_schema(Parameters& parameters, const CallContext&) {
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
   return scenes::scene_schema();
+}
+
+Result<std::string> list_formats(Parameters& parameters, const CallContext&) {
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  output::JsonWriter json;
+  json.begin_list();
+  for (const std::string& ending : importers::readable_endings()) json.value(std::string_view(ending));
+  return json.end_list().text();
 }
 
 Result<std::string> list_presets(Parameters& parameters, const CallContext&) {

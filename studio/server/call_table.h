@@ -35,6 +35,7 @@ Result<std::string> import_mesh(Parameters& parameters, const CallContext& conte
 Result<std::string> show_schema(Parameters& parameters, const CallContext& context);
 Result<std::string> measure_scene(Parameters& parameters, const CallContext& context);
 Result<std::string> measure_scatter(Parameters& parameters, const CallContext& context);
+Result<std::string> list_formats(Parameters& parameters, const CallContext& context);
 Result<std::string> list_presets(Parameters& parameters, const CallContext& context);
 Result<std::string> read_notes(Parameters& parameters, const CallContext& context);
 Result<std::string> write_notes(Parameters& parameters, const CallContext& context);

@@ -22,7 +22,7 @@ constexpr std::pair<const char*, Call> kCalls[] = {
     {"scene.write", write_scene},          {"scene.check", check_scene},           {"scene.show", show_scene},
     {"scene.import", import_mesh},         {"scene.presets", list_presets},        {"scene.schema", show_schema},
     {"scene.measure", measure_scene},      {"scene.scatter", measure_scatter},     {"train.begin", begin_training},
-    {"train.end", end_training},
+    {"train.end", end_training},           {"scene.formats", list_formats},
 };
 
 void write_entries(output::JsonWriter& json, const char* key, const std::vector<FolderEntry>& entries) {

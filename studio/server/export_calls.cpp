@@ -90,6 +90,7 @@ Result<std::string> export_session(Parameters& parameters, const CallContext& co
   options.should_stop = context.should_stop;
   const Result<film::ExportOutcome> outcome = film::export_video(sessions, *place, options);
   if (!outcome) return outcome.errors();
+  if (context.films) context.films->add(*place);
   output::JsonWriter json;
   json.begin_object()
       .member("path", std::string_view(output))

@@ -49,12 +49,11 @@ Knock knock_of(const http::request<http::empty_body>& request, const std::string
   return knock;
 }
 
-/// The name behind "/upload/"; percent signs are decoded. None: no such target.
-std::optional<std::string> upload_name(std::string_view target) {
-  constexpr std::string_view kUpload = "/upload/";
-  if (!target.starts_with(kUpload)) return std::nullopt;
+/// The name of a file behind such a beginning; percent signs are decoded. None: the target begins otherwise.
+std::optional<std::string> name_behind(std::string_view begin, std::string_view target) {
+  if (!target.starts_with(begin)) return std::nullopt;
   std::string name;
-  for (std::size_t i = kUpload.size(); i < target.size(); ++i) {
+  for (std::size_t i = begin.size(); i < target.size(); ++i) {
     const auto digit = [&](std::size_t at) -> int {
       const char c = at < target.size() ? target[at] : '?';
       return c >= '0' && c <= '9'   ? c - '0'
@@ -68,6 +67,27 @@ std::optional<std::string> upload_name(std::string_view target) {
       name += target[i];
   }
   return name;
+}
+
+std::string film_type(const std::string& path) {
+  return path.ends_with(".mp4") ? "video/mp4" : path.ends_with(".avi") ? "video/x-msvideo" : "application/octet-stream";
+}
+
+/// What every response says: nobody keeps it, and only this server's own page may use it.
+template <typename Body>
+void add_headers(http::response<Body>& response, const std::string& type) {
+  response.set(http::field::content_type, type);
+  response.set(http::field::cache_control, "no-store");
+  response.set(
+      "Content-Security-Policy",
+      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
+      "base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+  response.set("X-Content-Type-Options", "nosniff");
+  response.set("Referrer-Policy", "no-referrer");
+  response.set("Cross-Origin-Opener-Policy", "same-origin");
+  response.set("Cross-Origin-Resource-Policy", "same-origin");
+  response.keep_alive(false);
+  response.prepare_payload();
 }
 
 }  // namespace
@@ -104,8 +124,10 @@ void HttpConnection::take_head() {
       return refuse(http::status::bad_request, "the WebSocket protocol must be " + std::string(kSubprotocol));
     return std::make_shared<WebClient>(services_, std::move(stream_), std::move(counted_))->start(request, offered);
   }
-  const std::optional<std::string> upload = upload_name(target);
+  const std::optional<std::string> upload = name_behind("/upload/", target), film = name_behind("/film/", target);
   if (upload && request.method() == http::verb::put) return take_upload(*upload);
+  if (upload && request.method() == http::verb::delete_) return remove_upload(*upload);
+  if (film && request.method() == http::verb::get) return send_film(*film);
   if (target != "/call") return refuse(http::status::not_found, "there is nothing at " + target);
   if (request.method() != http::verb::post) return refuse(http::status::method_not_allowed, "calls are made by POST");
   if (view_of(request[http::field::content_type]).substr(0, 16) != "application/json")
@@ -150,6 +172,7 @@ void HttpConnection::answer_call(const std::string& body) {
     Parameters parameters = given ? *given : *Parameters::parse("{}");
     CallContext context{self->services_.folder};
     context.should_stop = [&] { return self->services_.ends.load(); };
+    context.films = &self->services_.films;
     const Result<std::string> result = run_call(name, parameters, context);
     finish(result ? http::status::ok : http::status::unprocessable_entity,
            result ? answer(id, *result) : answer(id, result.errors()));
@@ -179,10 +202,33 @@ void HttpConnection::take_upload(const std::string& name) {
                      if (broken == http::error::body_limit)
                        return self->refuse(http::status::payload_too_large, "the file is larger than the limit");
                      if (broken) return;  // the connection is gone
+                     self->services_.uploads.add(to);
                      output::JsonWriter json;
                      json.begin_object().member("path", self->services_.folder.relative(to)).end_object();
                      self->send(http::status::created, "application/json", as_utf8(json.text()));
                    });
+}
+
+void HttpConnection::remove_upload(const std::string& name) {
+  const Result<std::string> file = services_.folder.find(name);
+  if (!file) return refuse(http::status::forbidden, to_string(file.errors().front()));
+  if (!services_.uploads.remove(*file))
+    return refuse(http::status::conflict, name + " stays: it was not uploaded in this run, or has changed since");
+  send(http::status::ok, "application/json", "{}");
+}
+
+/// Streams a film of this run; other files of the folder are not given.
+void HttpConnection::send_film(const std::string& path) {
+  const Result<std::string> file = services_.folder.find(path);
+  if (!file) return refuse(http::status::forbidden, to_string(file.errors().front()));
+  if (!services_.films.holds(*file))
+    return refuse(http::status::not_found, path + " is no film that was exported in this run");
+  auto response = std::make_shared<http::response<http::file_body>>(http::status::ok, 11);
+  beast::error_code failure;
+  response->body().open(file->c_str(), beast::file_mode::scan, failure);
+  if (failure) return refuse(http::status::not_found, path + " cannot be read: " + failure.message());
+  add_headers(*response, film_type(*file));
+  write(response, services_.limits.upload);
 }
 
 void HttpConnection::send_page() {
@@ -199,21 +245,16 @@ void HttpConnection::refuse(http::status status, const std::string& why) {
 
 void HttpConnection::send(http::status status, const std::string& type, std::string body, bool is_compressed) {
   auto response = std::make_shared<http::response<http::string_body>>(status, 11);
-  response->set(http::field::content_type, type);
   if (is_compressed) response->set(http::field::content_encoding, "gzip");
-  response->set(http::field::cache_control, "no-store");
-  response->set(
-      "Content-Security-Policy",
-      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
-      "base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
-  response->set("X-Content-Type-Options", "nosniff");
-  response->set("Referrer-Policy", "no-referrer");
-  response->set("Cross-Origin-Opener-Policy", "same-origin");
-  response->set("Cross-Origin-Resource-Policy", "same-origin");
-  response->keep_alive(false);
   response->body() = std::move(body);
-  response->prepare_payload();
-  stream_.expires_after(services_.limits.handshake);
+  add_headers(*response, type);
+  write(response, services_.limits.handshake);
+}
+
+/// Sends a response within a time, and ends.
+template <typename Response>
+void HttpConnection::write(std::shared_ptr<Response> response, std::chrono::milliseconds within) {
+  stream_.expires_after(within);
   http::async_write(stream_, *response, [self = shared_from_this(), response](beast::error_code, std::size_t) {
     beast::error_code ignored;
     self->stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);

@@ -2,6 +2,7 @@
 
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -24,9 +25,13 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   bool refuses_length(std::uint64_t most);
   void take_call();
   void take_upload(const std::string& name);
+  void remove_upload(const std::string& name);
+  void send_film(const std::string& path);
   void answer_call(const std::string& body);
   void send_page();
   void send(boost::beast::http::status status, const std::string& type, std::string body, bool is_compressed = false);
+  template <typename Response>
+  void write(std::shared_ptr<Response> response, std::chrono::milliseconds within);
   void drain();
   void refuse(boost::beast::http::status status, const std::string& why);
 

@@ -15,7 +15,7 @@ struct Limits {
   std::size_t most_waiting = 32u << 20;                ///< of control messages that a page does not take [bytes]
   std::size_t most_calls = 16;                         ///< of one page at a time
   std::chrono::seconds handshake{10};                  ///< for a request or a WebSocket handshake to be complete
-  std::chrono::seconds upload{600};                    ///< for an upload to be complete
+  std::chrono::seconds upload{600};                    ///< for an upload to be complete, or a film to be taken
 };
 
 }  // namespace ctpm::server

@@ -11,6 +11,7 @@
 #include "studio/server/access.h"
 #include "studio/server/folder.h"
 #include "studio/server/limits.h"
+#include "studio/server/own_files.h"
 #include "studio/server/urgency.h"
 
 namespace ctpm::server {
@@ -23,6 +24,7 @@ struct Services {
   Folder folder;
   Access access;
   Limits limits;
+  OwnFiles uploads, films;                               ///< taken from pages; exported for them
   std::size_t connections = 0;                           ///< open now; of the network's thread
   std::map<const void*, std::function<void()>> clients;  ///< closes each page; of the network's thread
   std::atomic<bool> ends{false};                         ///< the server is about to stop: calls must end

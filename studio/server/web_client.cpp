@@ -112,6 +112,7 @@ void WebClient::take_call(Parameters& message) {
     Clock::time_point last = Clock::now();
     CallContext context{self->services_.folder, desk.get()};
     context.should_stop = [&] { return *cancelled || self->services_.ends; };
+    context.films = &self->services_.films;
     context.progress = [&](std::int64_t done, std::int64_t total) {
       if (Clock::now() - last < std::chrono::milliseconds(100)) return;
       last = Clock::now();

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
+#include "importers/formats.h"
 #include "importers/mesh.h"
 #include "importers/topology.h"
 #include "zoo.h"
@@ -40,6 +42,22 @@ std::vector<Written> all_formats(const importers::RawMesh& mesh) {
           {"cm.dae", zoo::to_dae(mesh, 0.01), 1, 0.01},
           {"mm.fbx", zoo::to_fbx(mesh, 0.1), 0.001, 1},
           {"organ.3ds", zoo::to_3ds(mesh), 0, 1}};
+}
+
+/// By a file that is read, below, or by what is said of one that holds something else.
+TEST(ReadMesh, EveryEndingThatIsOfferedHasAReader) {
+  const zoo::Folder folder;
+  const auto has_reader = [&](const std::string& ending) {
+    const auto read = importers::read_mesh(folder.write("organ" + ending, "no organ"));
+    return text_of(read.errors()).find("No suitable reader found") == std::string::npos;
+  };
+  const std::vector<std::string> endings = importers::readable_endings();
+  std::set<std::string> shown;
+  for (const Written& file : all_formats(sample()))
+    if (const std::string name = file.name; name != "UPPER.STL") shown.insert(name.substr(name.rfind('.')));
+  for (const std::string& ending : shown) EXPECT_TRUE(std::count(endings.begin(), endings.end(), ending)) << ending;
+  EXPECT_FALSE(has_reader(".docx"));
+  for (const std::string& ending : endings) EXPECT_TRUE(shown.contains(ending) || has_reader(ending)) << ending;
 }
 
 TEST(ReadMesh, EveryFormatGivesTheSameMesh) {

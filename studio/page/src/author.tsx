@@ -16,7 +16,6 @@ import { command, verdictOf } from "./text";
 import { kTurns, Viewer } from "./viewer";
 
 const kLookOnDisk = 2000; // [ms]
-const kMeshes = ".stl,.obj,.ply,.off,.gltf,.glb,.dae,.fbx,.3ds,.3mf,.vtk";
 const kPainting = "Painting anchors: arrow keys move the brush, Space paints, Shift and Space erase, Escape ends it";
 type Panel = "place" | "filling" | "scene";
 
@@ -44,7 +43,9 @@ export function Author({ connection, listing, onTry, onChanged }: {
   const [desk, setDesk] = useState<Desk | null>(null);
   const [, setVersion] = useState(0);
   const [imported, setImported] = useState<Imported | null>(null);
-  const [dropped, setDropped] = useState<File | null>(null);
+  const [dropped, setDropped] = useState<File | null>(null), [leftOut, setLeftOut] = useState<string[]>([]);
+  const [isOver, setOver] = useState(false); // a file that is dragged
+  const [endings, setEndings] = useState<string[]>([]); // of the files that an import reads
   const [panel, setPanel] = useState<Panel>("place");
   const [selected, setSelected] = useState("");
   const [mode, setMode] = useState<GizmoMode>("move");
@@ -149,14 +150,23 @@ export function Author({ connection, listing, onTry, onChanged }: {
     };
   }, [doc]);
 
-  const take = (file: File | undefined) => {
-    if (file) setDropped(file), setImported(null);
+  useEffect(() => void connection.call<string[]>("scene.formats").then(setEndings, setError), [connection]);
+  /** Takes the first file that an import reads; an import is of one. */
+  const take = (files: File[]) => {
+    const file = files.find(({ name }) => endings.some((ending) => name.toLowerCase().endsWith(ending))) ?? files[0];
+    if (file) setDropped(file), setImported(null), setLeftOut(files.filter((other) => other !== file).map(({ name }) => name));
+  };
+  const drag = (event: DragEvent) => {
+    event.preventDefault();
+    // It is left for what lies within the room too.
+    setOver(event.type === "dragover" ? event.dataTransfer?.types.includes("Files") ?? false
+      : event.type === "dragleave" && isOver && (event.currentTarget as Element).contains(event.relatedTarget as Node | null));
   };
   const path = doc?.path ?? "";
   return (
-    <div class="room author" onDragOver={(e) => e.preventDefault()} onDrop={(e) => {
-      e.preventDefault();
-      take(e.dataTransfer?.files[0]);
+    <div class="room author" onDragOver={drag} onDragLeave={drag} onDrop={(e) => {
+      drag(e);
+      take([...e.dataTransfer?.files ?? []]);
     }}>
       <nav class="list" aria-label="Scenes">
         <h2>Scenes</h2>
@@ -170,8 +180,8 @@ export function Author({ connection, listing, onTry, onChanged }: {
         </ul>
         <label class="pick">
           Import a mesh…
-          <input type="file" accept={kMeshes} onChange={(e) => {
-            take(e.currentTarget.files?.[0]);
+          <input type="file" accept={endings.join(",")} onChange={(e) => {
+            take([...e.currentTarget.files ?? []]);
             e.currentTarget.value = "";
           }} />
         </label>
@@ -185,13 +195,14 @@ export function Author({ connection, listing, onTry, onChanged }: {
         {desk && doc && <ViewBar desk={desk} modes={modes} mode={used} onMode={setMode} onVersion={() => setVersion((v) => v + 1)} />}
         {!doc && !scene?.isLoading && (
           <Empty title="Drop a mesh of an organ here">
-            <p>STL, OBJ, PLY and others. It is checked, repaired and filled with spheres, and becomes a scene that runs. Or choose a scene.</p>
+            <p>STL, OBJ, PLY and others, also volume meshes and segmentations. It is checked, repaired and filled with spheres, and becomes a scene that runs. Or choose a scene.</p>
           </Empty>
         )}
         {scene?.isLoading && !scene.shown && <Empty title={`Loading ${path}`}><p>Its organs are read and filled with spheres{scene.filled === null ? "" : `: ${Math.round(100 * scene.filled)} %`}.</p></Empty>}
         {scene?.isLoading && scene.shown && <p class="busy" role="status">{scene.fillingText}</p>}
         {brushRadius !== null && brushSays && !scene?.isLoading && <p class="busy brush-says" role="status">{brushSays}</p>}
         {scene?.error && !doc && <Problems error={scene.error} />}
+        {isOver && <div class="drop-target">Drop it here to import it</div>}
       </div>
       <div class="time">
         {desk && scene && doc && <Toolbar scene={scene} onSave={() => void save()}
@@ -200,7 +211,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
       <aside class="side">
         {dropped ? (
           <div class="panel">
-            <ImportForm key={dropped.name} connection={connection} file={dropped} open={scene?.shown ? scene : null} onCancel={() => setDropped(null)} onDone={(result, isAdded) => {
+            <ImportForm key={dropped.name} connection={connection} file={dropped} leftOut={leftOut} open={scene?.shown ? scene : null} onCancel={() => setDropped(null)} onDone={(result, isAdded) => {
               setDropped(null);
               if (!isAdded) open(result.scene);
               setImported(result);

@@ -97,6 +97,22 @@ export class Connection {
     });
   }
 
+  /** Removes again what was uploaded. */
+  async removeUpload(name: string): Promise<void> {
+    await this.ask("DELETE", `/upload/${encodeURIComponent(name)}`);
+  }
+
+  /** A film that an export has written. */
+  async film(path: string): Promise<Blob> {
+    return (await this.ask("GET", `/film/${encodeURIComponent(path)}`)).blob();
+  }
+
+  private async ask(method: string, target: string): Promise<Response> {
+    const response = await fetch(target, { method, headers: { Authorization: `Bearer ${this.token}` } });
+    if (!response.ok) throw new CallFailed(((await response.json()) as { errors: Problem[] }).errors);
+    return response;
+  }
+
   /** A message; null: it cannot be read. */
   private read(data: string | ArrayBuffer): Binary | TextMessage | null {
     try {

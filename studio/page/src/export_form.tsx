@@ -27,7 +27,17 @@ const kAligned: [string, string][] = [["", "path, else first contact"], ["path",
 /** How the command brings both together as they are seen here. */
 const kSeen: Record<string, string> = { path: "path", "contact begins": "contact", cut: "cut" };
 const seenAlign = (player: Player) => kSeen[player.aligned] ?? (player.offset === 0 ? "" : String(Number(player.offset.toFixed(6))));
+const kKept = 60000; // until a download has begun [ms]
 const kSlow: [string, string][] = [["cut", "cuts"], ["damage", "damage"], ["worst", "largest force and depth"]];
+
+/** Hands a film to its viewer, as a download. */
+async function download(connection: Connection, path: string): Promise<void> {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(await connection.film(path));
+  link.download = path.replace(/^.*\//, "");
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), kKept);
+}
 
 /** A video of what is seen. */
 export function ExportForm({ connection, player, look }: { connection: Connection; player: Player; look: Look }) {
@@ -119,6 +129,7 @@ export function ExportForm({ connection, player, look }: { connection: Connectio
       {result && (
         <p class="good" role="status">{result.path}: {result.frames} frames, {result.codec}, {bytes(result.bytes)}, in {seconds(result.elapsed_s, 1)}; replay {result.same_as_recorded ? "same as recorded" : "DIFFERS"}{result.note && `; ${result.note}`}</p>
       )}
+      {result && <button type="button" onClick={() => download(connection, result.path).catch(setError)}>Download {result.path.replace(/^.*\//, "")}</button>}
       <ShownCommand text={shown} />
     </Section>
   );

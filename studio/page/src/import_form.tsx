@@ -4,7 +4,7 @@ import * as three from "three";
 import type { AuthorScene, Finding } from "./author_scene";
 import type { Connection } from "./connection";
 import { freeName, listOf, mmVector } from "./items";
-import { findJson, type Json, parseJson } from "./json_edit";
+import { type Json, parseJson } from "./json_edit";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { CallFailed, type CameraView, type Vector } from "./protocol";
 import { command } from "./text";
@@ -31,8 +31,9 @@ export interface Imported {
 }
 
 const kUnits: Record<string, string> = { "0.001": "mm", "0.01": "cm", "0.1": "dm", "1": "m", "0.0254": "in" };
-const kGap = 0.01; // between an organ that is added and the others [m]
+const kGap = 0.1; // between an organ that is added and the others, of its size, as the command leaves it
 const kImportsCamera = "front"; // as an import names the camera that it places
+const kMaps = /\.(nii|nii\.gz|nrrd)$/i; // segmentations, of which each label is an organ
 const kGeneric = "soft-tissue"; // what an organ of no name is taken as
 
 /** What was found in a mesh, what was done about it, and what remains. */
@@ -78,16 +79,21 @@ function movedCamera(camera: CameraView | undefined, before: [Vector, Vector], n
   return { ...camera, eye: moved(camera.eye), target: moved(camera.target) };
 }
 
-/** Adds the organ of a scene that was imported to the one that is open, beside its organs, and moves the camera that an
+/** Adds the organs of a scene that was imported to the one that is open, beside its organs, and moves the camera that an
     import left there until it sees all of them: one step of its history. */
-async function addOrgan(connection: Connection, open: AuthorScene, imported: Imported): Promise<void> {
+async function addOrgans(connection: Connection, open: AuthorScene, imported: Imported): Promise<void> {
   const { text } = await connection.call<{ text: string }>("scene.read", { path: imported.scene });
-  const organ = findJson(parseJson(text), ["organs", 0]) as { [key: string]: Json };
+  const added = listOf(parseJson(text), "organs");
   const doc = open.doc!, organs = listOf(doc.value, "organs"), view = open.shown?.view;
-  const at = view ? new three.Vector3(view.most[0] + kGap - imported.least[0], (view.least[1] + view.most[1] - imported.least[1] - imported.most[1]) / 2, view.least[2] - imported.least[2])
+  const size = new three.Vector3(...imported.most).distanceTo(new three.Vector3(...imported.least));
+  const at = view ? new three.Vector3(view.most[0] + kGap * size - imported.least[0], (view.least[1] + view.most[1] - imported.least[1] - imported.most[1]) / 2, view.least[2] - imported.least[2])
     : new three.Vector3();
-  const { name, mesh, at_mm: _, ...rest } = organ;
-  const values: [JSONPath, Json][] = [[["organs", organs.length], { name: freeName(organs, String(name)), mesh, at_mm: mmVector(at), ...rest }]];
+  const values: [JSONPath, Json][] = [], known = [...organs];
+  for (const { name, mesh, at_mm: _, ...rest } of added) {
+    const organ = { name: freeName(known, String(name)), mesh, at_mm: mmVector(at), ...rest };
+    values.push([["organs", known.length], organ]);
+    known.push(organ);
+  }
   const cameras = listOf(doc.value, "cameras");
   if (view && cameras[0]?.name === kImportsCamera) {
     const box = new three.Box3(new three.Vector3(...imported.least), new three.Vector3(...imported.most)).translate(at);
@@ -100,19 +106,22 @@ async function addOrgan(connection: Connection, open: AuthorScene, imported: Imp
 }
 
 /** What is needed to make a scene of a mesh, and how far it is. */
-export function ImportForm({ connection, file, open, onCancel, onDone }: {
+export function ImportForm({ connection, file, leftOut, open, onCancel, onDone }: {
   connection: Connection;
   file: File;
+  leftOut: string[]; // files that came with it
   open: AuthorScene | null; // a scene to which the organ can be added
   onCancel: () => void;
   onDone: (imported: Imported, isAdded: boolean) => void;
 }) {
-  const stem = file.name.replace(/\.[^.]*$/, "").replace(/[^\w-]+/g, "-");
+  const isMap = kMaps.test(file.name);
+  const stem = file.name.replace(/\.(nii\.gz|[^.]*)$/i, "").replace(/[^\w-]+/g, "-");
   const folder = open?.doc?.path.replace(/[^/]*$/, "") ?? "";
   const [presets, setPresets] = useState<Preset[]>([]);
   const [organ, setOrgan] = useState("");
   const [unit, setUnit] = useState("");
   const [radius, setRadius] = useState("");
+  const [labels, setLabels] = useState("");
   const [hole, setHole] = useState("");
   const [scene, setScene] = useState(/\.obj$/i.test(file.name) ? `${stem}-scene.json` : `${stem}.json`);
   const [isAdded, setAdded] = useState(false);
@@ -129,7 +138,13 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
   }, [connection, file]);
 
   const tissue = presets.find((preset) => preset.name === organ);
-  const target = isAdded ? folder + scene : scene, refused = holesOf(error);
+  const target = isAdded ? folder + scene : scene, names = isMap ? labels.split(",").map((name) => name.trim()).filter(Boolean) : [], refused = holesOf(error);
+  /** What was uploaded for an import that failed is in nobody's way. */
+  const takeBack = async () => {
+    const name = uploaded.current;
+    uploaded.current = "";
+    await connection.removeUpload(name).catch(() => {}); // somebody has changed it: it is theirs now
+  };
   const start = async (closed = hole) => {
     setError(null), setHole(closed);
     const { signal } = (stop.current = new AbortController());
@@ -142,21 +157,28 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
       setProgress(["importing", 0]);
       const params = {
         mesh: uploaded.current, scene: target, organ, unit_m: unit ? Number(unit) : undefined, radius_m: radius ? Number(radius) / 1e3 : undefined,
-        largest_hole_m: closed ? Number(closed) / 1e3 : undefined,
+        names: names.length ? names : undefined, largest_hole_m: closed ? Number(closed) / 1e3 : undefined,
       };
       const imported = await connection.call<Imported>("scene.import", params,
-        { progress: (done, total) => setProgress([done < total ? "importing" : "fitting the stiffness", done / total]), signal });
-      if (isAdded && open) await addOrgan(connection, open, imported);
+        { progress: (done, total) => setProgress([done < total ? "importing" : "fitting the stiffness", done / total]), signal })
+        .catch(async (failure) => {
+          await takeBack();
+          throw failure;
+        });
+      if (isAdded && open) await addOrgans(connection, open, imported);
       onDone(imported, isAdded);
       return;
     } catch (failure) {
-      setError(signal.aborted ? new Error("Stopped; nothing was written but the mesh that was uploaded.") : (failure as Error));
+      setError(signal.aborted ? new Error("Stopped; nothing was written.") : (failure as Error));
     }
     setProgress(null);
   };
   return (
     <Section title="Import a mesh">
       <Readings rows={[["file", file.name], ["size", `${(file.size / 1e6).toFixed(2)} MB`]]} />
+      {leftOut.length > 0 && (
+        <p class="warning" role="status">One file is imported at a time: {leftOut.join(", ")} {leftOut.length === 1 ? "was" : "were"} left out. Drop {leftOut.length === 1 ? "it" : "the next"} when this one is there.</p>
+      )}
       {open?.doc && (
         <fieldset class="choice">
           <legend>becomes</legend>
@@ -168,6 +190,11 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
         <select value={organ} aria-describedby="tissue-source" onChange={(e) => setOrgan(e.currentTarget.value)}>{presets.map((p) => <option key={p.name} title={p.source}>{p.name}</option>)}</select>
       </label>
       <p class="hint source" id="tissue-source">How stiff, damped, heavy and tough it is.{tissue && ` Its values: ${tissue.source}.`}</p>
+      {isMap && (
+        <label class="field"><span>labels to take, with commas between; empty: the only one</span>
+          <input value={labels} onInput={(e) => setLabels(e.currentTarget.value)} />
+        </label>
+      )}
       <label class="field"><span>unit of the file</span>
         <select value={unit} onChange={(e) => setUnit(e.currentTarget.value)}>
           <option value="">guessed</option>
@@ -194,8 +221,9 @@ export function ImportForm({ connection, file, open, onCancel, onDone }: {
       {refused !== null && !progress && (
         <button type="button" class="main" onClick={() => void start(String(refused))}>Close holes up to {refused} mm and import</button>
       )}
-      <ShownCommand text={command("import", file.name, "--organ", organ, ...(unit ? ["--unit", kUnits[unit]] : []),
-        ...(radius ? ["--radius-mm", radius] : []), ...(hole ? ["--largest-hole-mm", hole] : []), "-o", target)} />
+      {isAdded && <p class="hint">The command writes the organ into the file at once. Here it is added to the text, which you save, and {target} stays a scene of its own.</p>}
+      <ShownCommand text={command("import", file.name, ...names.flatMap((name) => ["--label", name]), "--organ", organ, ...(unit ? ["--unit", kUnits[unit]] : []),
+        ...(radius ? ["--radius-mm", radius] : []), ...(hole ? ["--largest-hole-mm", hole] : []), ...(isAdded && open?.doc ? ["--into", open.doc.path, "--beside"] : ["-o", target]))} />
     </Section>
   );
 }

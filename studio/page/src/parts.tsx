@@ -16,8 +16,8 @@ export function Readings({ rows }: { rows: [string, ComponentChildren, string?][
   );
 }
 
-/** What went wrong, in the program's words; it is brought into view. */
-export function Problems({ error }: { error: Error | null }) {
+/** What went wrong, in the program's words; it is brought into view. With `onClose` it can be put away. */
+export function Problems({ error, onClose }: { error: Error | null; onClose?: () => void }) {
   const box = useRef<HTMLDivElement>(null);
   useEffect(() => box.current?.scrollIntoView({ block: "nearest" }), [error]);
   if (!error) return null;
@@ -29,6 +29,7 @@ export function Problems({ error }: { error: Error | null }) {
           <li key={i}>{line}</li>
         ))}
       </ul>
+      {onClose && <button type="button" class="quiet" onClick={onClose}>Close</button>}
     </div>
   );
 }

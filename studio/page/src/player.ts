@@ -74,7 +74,7 @@ export class Player {
     if (beside === undefined) this.close(1);
     else this.drop(1); // nothing of it is to be seen beside the new one
     const [first, second] = await Promise.allSettled([this.load(0, session), beside === undefined ? null : this.load(1, beside)]);
-    if (first.status === "rejected") this.close(1);
+    if (first.status === "rejected") for (const stage of [1, 0]) this.close(stage); // the program still has the one before open
     else if (!first.value) return; // another one was opened meanwhile
     else {
       this.path = null, this.aligned = "";
@@ -88,11 +88,15 @@ export class Player {
     for (const one of [first, second]) if (one.status === "rejected") throw one.reason;
   }
 
-  /** Null: another session was opened as that stage meanwhile. Its curves come when they are there. */
+  /** Null: another session was opened as that stage meanwhile, whether this one can be opened or not. Its curves come
+      when they are there. */
   private async load(stage: number, path: string): Promise<Track | null> {
     this.drop(stage);
     const opening = this.openings.get(stage), isWanted = () => this.openings.get(stage) === opening;
-    const session = await this.connection.callInTurn<OpenedSession>(stage, "session.open", { path }, isWanted);
+    const session = await this.connection.callInTurn<OpenedSession>(stage, "session.open", { path }, isWanted).catch((failure) => {
+      if (isWanted()) throw failure;
+      return null;
+    });
     if (!session || !isWanted()) return null;
     const track: Track = { stage, session, timeline: null, scene: new StageScene(session.view) };
     const tools = this.tools.get(stage); // they come before the answer
@@ -129,6 +133,7 @@ export class Player {
     if (stage === 1) this.path = null;
     this.viewer.isCovered = false;
     this.viewer.set(stage, null);
+    this.onDrawing(stage, null);
     this.onChange();
   }
 
@@ -172,16 +177,22 @@ export class Player {
   }
 
   /** Sees the sessions as the program says; what the page cannot draw, the program draws in pictures of that size. One
-      picture is asked for at a time, so that a hand that turns the view is followed as fast as they come. */
+      picture is asked for at a time, so that a hand that turns the view is followed as fast as they come. What comes of a
+      session that is no longer shown, a failure too, is of no interest. */
   async see(look: Look, size: string, onSeen: (seen: Seen) => void): Promise<void> {
     this.wanted = { look, size };
     if (this.isLooking) return;
     this.isLooking = true;
     try {
       while (this.wanted && this.tracks.has(0)) {
-        const { look: newest, size: its } = this.wanted;
+        const { look: newest, size: its } = this.wanted, shown = [...this.tracks.values()];
+        const isShown = () => shown.every((track) => this.tracks.get(track.stage) === track);
         this.wanted = null;
-        onSeen(await this.lookAt(newest, isPlain(newest) ? null : its));
+        const seen = await this.lookAt(newest, isPlain(newest) ? null : its).catch((failure) => {
+          if (isShown()) throw failure;
+          return null;
+        });
+        if (seen && isShown()) onSeen(seen);
       }
     } finally {
       this.isLooking = false;

@@ -33,7 +33,8 @@ export function Review({ connection, listing, place, onPlace }: {
   const [player, setPlayer] = useState<Player | null>(null);
   const [, setTick] = useState(0);
   const [version, setVersion] = useState(0);
-  const [error, setError] = useState<Error | null>(null);
+  const [error, setError] = useState<Error | null>(null); // of what is seen: the next picture is without it
+  const [unopened, setUnopened] = useState<{ path: string; error: Error } | null>(null); // said until another session is chosen
   const [panel, setPanel] = useState<Panel>("moment");
   const [notes, setNotes] = useState<{ list: Note[]; stage: number }>({ list: [], stage: 0 });
   const [comparison, setComparison] = useState<ComparisonResult | null>(null);
@@ -57,7 +58,8 @@ export function Review({ connection, listing, place, onPlace }: {
       }, 50);
     };
     connection.onEvent("stage_failed", (content) => {
-      const { errors } = content as { errors: { message: string }[] };
+      const { stage, errors } = content as { stage: number; errors: { message: string }[] };
+      if (!made.tracks.has(stage)) return; // of a session that was closed meanwhile
       setError(new Error(errors.map((e) => e.message).join("\n")));
     });
     setPlayer(made);
@@ -72,14 +74,20 @@ export function Review({ connection, listing, place, onPlace }: {
 
   const openAt = useCallback(async (there: Place) => {
     if (!player) return;
-    setError(null);
+    setError(null), setUnopened(null);
     setComparison(null);
-    await player.openAt(there).catch(setError);
+    try {
+      await player.openAt(there);
+    } catch (failure) {
+      const isBeside = player.tracks.has(0);
+      setUnopened({ path: (isBeside ? there.beside : there.session) ?? "", error: failure as Error });
+      if (!isBeside) onPlace({}); // a link leads to what is shown
+    }
   }, [player]);
   /** The session beside; undefined: none. */
   const openBeside = useCallback(async (path: string | undefined) => {
     if (!player) return;
-    setError(null);
+    setError(null), setUnopened(null);
     setComparison(null);
     try {
       if (path !== undefined) await player.openBeside(path);
@@ -88,7 +96,7 @@ export function Review({ connection, listing, place, onPlace }: {
         player.setOffset(0);
       }
     } catch (failure) {
-      setError(failure as Error);
+      setUnopened({ path: path!, error: failure as Error });
     }
   }, [player]);
 
@@ -200,8 +208,8 @@ export function Review({ connection, listing, place, onPlace }: {
           {second && <canvas ref={drawn[1]} hidden />}
         </div>
         {!first && (
-          <Empty title="Choose a session">
-            <p>Its force, depth and speed appear below; any moment is a press away.</p>
+          <Empty title={unopened ? `${unopened.path} cannot be shown` : "Choose a session"}>
+            <p>{unopened && "Choose another session. "}Its force, depth and speed appear below; any moment is a press away.</p>
           </Empty>
         )}
         {first && (
@@ -210,13 +218,13 @@ export function Review({ connection, listing, place, onPlace }: {
             {second && <span class="second"><b>trainee: {second.session.path} {seconds(player!.timeOf(1))}</b></span>}
           </div>
         )}
-        {legend && <LegendBar legend={legend} />}
+        {first && legend && <LegendBar legend={legend} />}
         {first && (
           <div class="look-bar">
             <LookFields look={look} onLook={setLook} onOtherSide={otherSide} view={first.session.view} />
           </div>
         )}
-        <Problems error={error} />
+        <Problems error={unopened?.error ?? error} onClose={unopened && first ? () => setUnopened(null) : undefined} />
       </div>
       <div class="time">
         {player && first && (

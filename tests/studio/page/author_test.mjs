@@ -1,6 +1,6 @@
 // An author in a browser: author_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
@@ -21,13 +21,15 @@ after(() => leave(studio, folder));
 
 const kScene = "my-kidney-scene.json";
 const { onDisk, text, scene, button, handle, settled, write, centreOf, drag, untilSaved, save, taken } = authorOf(() => page, () => folder, kScene);
+/** What is dragged: files of these names and contents. */
+const dragged = (...files) => page.evaluateHandle((files) => {
+  const data = new DataTransfer();
+  for (const [name, text] of files) data.items.add(new File([text], name));
+  return data;
+}, files);
 /** Drops a file onto the page. Returns when. */
 async function drop(name, bytes) {
-  const dropped = await page.evaluateHandle(([text, name]) => {
-    const data = new DataTransfer();
-    data.items.add(new File([text], name));
-    return data;
-  }, [bytes.toString(), name]);
+  const dropped = await dragged([name, bytes.toString()]);
   const at = Date.now();
   await page.dispatchEvent(".view canvas", "drop", { dataTransfer: dropped });
   return at;
@@ -49,8 +51,7 @@ step("a mesh of 100,000 triangles is imported, and an import that is stopped lea
   await button("cancel", "aside").click();
   await page.waitForSelector("aside .problems:has-text('Stopped')");
   console.log(`author: an import of 100,000 triangles was stopped ${Date.now() - started} ms after it was dropped`);
-  assert.deepEqual(readdirSync(folder).filter((name) => name.startsWith("large")), ["large.obj"]);
-  rmSync(join(folder, "large.obj"));
+  assert.deepEqual(readdirSync(folder).filter((name) => name.startsWith("large")), []);
   await button("Back", "aside").click();
   const again = await drop("large.obj", largeMesh(100000, 0.6));
   await page.locator("aside label:has-text('tissue') select").selectOption("liver");
@@ -72,6 +73,7 @@ step("a hole that is too wide is told, and closed when its author says so", asyn
   await page.waitForSelector("aside .problems:has-text('wider than')");
   const told = await page.locator("aside .problems").innerText();
   assert.match(told, /^holed\.obj: /);
+  assert.ok(!existsSync(join(folder, "holed.obj")), "what was uploaded for it is gone again");
   await picture(page, "author-holed");
   // What would close it is offered where it was refused.
   const width = /largest_hole_mm (\d+)/.exec(told)[1];
@@ -266,10 +268,21 @@ step("a second mesh becomes an organ of the scene, which is moved by its handle"
   const mesh = readFileSync(join(paths.source, "scenes", "organs", "kidney.obj"));
   await page.setInputFiles(".pick input", { name: "other-kidney.obj", mimeType: "model/obj", buffer: mesh });
   await page.click("aside label:has-text('an organ of')");
+  const shown = await page.locator("aside .command code").innerText(), other = makeFolder();
   await button("Import", "aside").click();
   await page.waitForSelector("aside .good:has-text('spheres')");
   await settled();
   const { organs, cameras } = await scene();
+  // The command that it showed adds the same organ at the same place.
+  for (const file of [kScene, ...JSON.parse(before).organs.map(({ mesh }) => mesh), "other-kidney.obj"]) cpSync(join(folder, file), join(other, file));
+  writeFileSync(join(other, kScene), before);
+  const done = ctpm(other, ...shown.split(" ").slice(1), "--radius-mm", String(organs[1].fill.radius_mm));
+  assert.equal(done.code, 0, `${shown}: ${done.err}`);
+  const added = JSON.parse(readFileSync(join(other, kScene), "utf8")).organs;
+  assert.deepEqual(added.map(({ name }) => name), ["kidney", "kidney-2"]);
+  for (const [i, at] of added[1].at_mm.entries()) assert.ok(Math.abs(at - organs[1].at_mm[i]) < 1, `${added[1].at_mm} and ${organs[1].at_mm}`);
+  assert.deepEqual({ ...added[1].material, fitted_for: 0 }, { ...organs[1].material, fitted_for: 0 });
+  rmSync(other, { recursive: true });
   assert.deepEqual(organs.map(({ name }) => name), ["kidney", "kidney-2"]); // what they are, not what their files are called
   // The camera that the import left sees both, as a picture of the command does, and so does Author.
   const [was, ...others] = JSON.parse(before).cameras;
@@ -394,5 +407,49 @@ step("it fits other windows", async () => {
 });
 
 step("every scene that was saved is one that the program takes", taken);
+
+step("a place to drop is seen while files are dragged, and which of several is not taken is said", async () => {
+  await page.setViewportSize({ width: 1280, height: 720 });
+  const target = page.locator(".drop-target"), files = await dragged(["organs.mtl", "newmtl red"], ["first.obj", "v 0 0 0"], ["second.NII.GZ", "map"]);
+  const hold = (event, relatedTarget = null) => page.dispatchEvent(".view > canvas", event, { dataTransfer: files, relatedTarget });
+  assert.equal(await target.count(), 0);
+  await hold("dragover");
+  await target.waitFor();
+  await picture(page, "author-drag");
+  await hold("dragleave");
+  await target.waitFor({ state: "detached" });
+  await hold("dragover");
+  await hold("drop");
+  await target.waitFor({ state: "detached" });
+  assert.equal(await page.locator("aside .readings dd").first().innerText(), "first.obj"); // the first that is read
+  assert.match(await page.locator("aside .warning").innerText(), /organs\.mtl, second\.NII\.GZ were left out/);
+  await picture(page, "author-left-out");
+  await button("Back", "aside").click();
+  // The chooser offers what the program reads.
+  const offered = await page.locator(".pick input").getAttribute("accept");
+  assert.deepEqual(offered.split(","), await studio.call("scene.formats", {}));
+  for (const ending of [".msh", ".vtu", ".nrrd", ".stl"]) assert.ok(offered.split(",").includes(ending), offered);
+});
+
+step("each label that is chosen of a segmentation becomes an organ, also of a scene that is open", async () => {
+  const before = await text();
+  await page.setInputFiles(".pick input", join(paths.source, "tests", "importers", "maps", "names.seg.nrrd"));
+  await page.click("aside label:has-text('an organ of')");
+  await page.locator("aside .field:has-text('radius') input").fill("4");
+  await button("Import", "aside").click();
+  await page.waitForSelector("aside .problems:has-text('choose one of left_kidney, stone')");
+  assert.ok(!existsSync(join(folder, "names.seg.nrrd")));
+  await page.locator("aside .field:has-text('labels') input").fill("left_kidney, stone");
+  assert.match(await page.locator("aside .command code").innerText(), /--label left_kidney --label stone .* --into my-kidney-scene\.json --beside$/);
+  await button("Import", "aside").click();
+  await page.waitForSelector("aside .good:has-text('names-seg.json')");
+  await settled();
+  const organs = (await scene()).organs, known = JSON.parse(before).organs.length;
+  assert.equal(organs.length, known + 2);
+  assert.deepEqual(organs[known].at_mm, organs[known + 1].at_mm); // as they lie to each other in the file
+  await picture(page, "author-labels");
+  await page.keyboard.press("Control+z");
+  assert.equal(await text(), before);
+});
 
 step("nothing was complained about", () => assert.deepEqual(studio.complaints, []));

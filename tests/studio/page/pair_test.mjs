@@ -231,6 +231,10 @@ step("an export is the one that the shown command makes, and can be cancelled", 
   await choose("size", "854x480");
   for (const moment of ["damage", "cuts"]) await page.click(`#panel fieldset label:has-text("${moment}")`);
   await makesWhatItShows("one", ["--slow-at cut,damage", "--fps 10", "--size 854x480"]);
+  // The film is a press away.
+  const [film] = await Promise.all([page.waitForEvent("download"), page.click("#panel button:text-is('Download one.avi')")]);
+  assert.equal(film.suggestedFilename(), "one.avi");
+  assert.ok(readFileSync(await film.path()).equals(readFileSync(join(folder, "one.avi"))));
   await picture(page, "review-export-one");
   await field("file in the folder").fill("long.avi");
   await field("from [s]").fill("0");

@@ -1,6 +1,6 @@
 // A reviewer in a browser: review_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { readFileSync, readdirSync } from "node:fs";
+import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { ctpm, ctpmBeside, leave, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings, step } from "./browser.mjs";
@@ -375,6 +375,42 @@ step("a picture that stands still is finer than one that moves", async () => {
   await page.evaluate(() => clearInterval(globalThis.turning));
   await finer(true);
   assert.notDeepEqual(await canvas.screenshot(), before, "the finer picture is the newest one");
+});
+
+step("of a session that cannot be read the reason stays until another one is chosen, and nothing of the one before", async () => {
+  writeFileSync(join(folder, "no-session.ctpm"), "a letter");
+  for (const room of ["Author", "Review"]) await page.click(`header nav button:has-text('${room}')`);
+  const choose = (name) => page.click(`.list button:has-text('${name}')`), problem = page.locator(".view .problems"), canvas = ".drawings canvas";
+  await choose("kidney-cut-expert");
+  await page.locator('.look-bar label:has-text("cutaway") select').selectOption("y");
+  await page.waitForSelector(`${canvas}:not([hidden])`);
+  await page.waitForFunction(() => location.hash.includes("kidney-cut-expert"));
+  await choose("no-session");
+  await page.waitForSelector(`${canvas}[hidden]`, { state: "attached" });
+  const told = async () => {
+    await page.waitForFunction(() => document.querySelector(".view .empty")?.textContent.includes("no-session.ctpm cannot be shown"));
+    await page.waitForTimeout(1000); // what was asked of the session before is answered by now
+    assert.match(await problem.innerText(), /no-session\.ctpm: is not a session/);
+    assert.equal(new URL(page.url()).hash, "#room=review");
+  };
+  await told();
+  await picture(page, "review-unopened");
+  // Chosen while the one before is still being looked at.
+  await choose("kidney-cut-expert");
+  await page.waitForSelector(".captions");
+  await choose("no-session");
+  await told();
+  assert.equal(await page.locator(`${canvas}:not([hidden])`).count(), 0);
+  // Beside another one it is said too, until that is put away.
+  await choose("kidney-cut-expert");
+  await page.click("#tab-compare");
+  assert.equal(await problem.count(), 0);
+  await page.locator("#panel select").selectOption("no-session.ctpm");
+  await problem.waitFor();
+  await page.waitForTimeout(1000);
+  assert.match(await problem.innerText(), /no-session\.ctpm: is not a session/);
+  await problem.locator("button").click();
+  await problem.waitFor({ state: "detached" });
 });
 
 step("nothing was complained about", () => assert.deepEqual(studio.complaints, []));

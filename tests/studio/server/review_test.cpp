@@ -279,6 +279,22 @@ TEST_F(Reviewing, AnExportIsTheCommandsAndCanBeCancelled) {
   ASSERT_EQ(command.code, 0) << command.err;
   EXPECT_EQ(testing::slurp(file("page.avi")), testing::slurp(file("command.avi")));
   EXPECT_NE(client.call("session.export", request)["errors"].dump().find("exists already"), std::string::npos);
+  // Its page may fetch it, and nothing else: not what is in the folder, nor what lies where it was.
+  const auto fetch = [&](const std::string& path, bool has_token = true) {
+    return testing::response_to(serving.port(), serving.head("GET /film/" + path, has_token ? serving.bearer() : ""));
+  };
+  const std::string fetched = fetch("page.avi");
+  EXPECT_EQ(testing::status_of(fetched), 200);
+  EXPECT_EQ(testing::body_of(fetched), testing::slurp(file("page.avi")));
+  EXPECT_NE(fetched.find("Content-Type: video/x-msvideo\r\n"), std::string::npos);
+  EXPECT_EQ(testing::status_of(fetch("page.avi", false)), 403);
+  for (const std::string& path : {std::string("command.avi"), std::string("page.avi.json"), kCut})
+    EXPECT_EQ(testing::status_of(fetch(path)), 404) << path;
+  for (const char* path : {"..%2Fx.avi", "%2Fetc%2Fpasswd", "nothing.avi"})
+    EXPECT_EQ(testing::status_of(fetch(path)), 403) << path;
+  fs::remove(file("page.avi"));
+  fs::copy(file("command.avi"), file("page.avi"));
+  EXPECT_EQ(testing::status_of(fetch("page.avi")), 404);
 
   client.send({{"id", 1000}, {"call", "session.export"}, {"params", {{"path", kCut}, {"output", "long.avi"}}}});
   for (;;) {

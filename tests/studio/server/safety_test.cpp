@@ -281,6 +281,31 @@ TEST_F(Safety, UploadsAreWholeOrNothing) {
   expect_it_goes_on(serving);
 }
 
+TEST_F(Safety, OnlyWhatWasUploadedInThisRunIsRemoved) {
+  const Serving serving(folder());
+  const auto answer = [&](const std::string& what, const std::string& more, const std::string& body = "") {
+    return status_of(response_to(serving.port(), serving.head(what, more) + body));
+  };
+  const auto put = [&](const std::string& name) {
+    EXPECT_EQ(answer("PUT /upload/" + name, serving.bearer() + "Content-Length: 4\r\n", "mesh"), 201);
+  };
+  put("mesh.stl"), put("changed.stl"), put("swapped.stl");
+  std::ofstream(folder() / "changed.stl") << "by its author";
+  fs::remove(folder() / "swapped.stl");
+  fs::create_symlink(folder() / "own.ctpm", folder() / "swapped.stl");
+  EXPECT_EQ(answer("DELETE /upload/mesh.stl", ""), 403) << "the token is missing";
+  for (const char* name : {"own.ctpm", "changed.stl", "swapped.stl"})
+    EXPECT_EQ(answer("DELETE /upload/" + std::string(name), serving.bearer()), 409) << name;
+  for (const char* name : {"nothing.stl", "..%2Fsecret.ctpm", "%2Fetc%2Fpasswd", ""})
+    EXPECT_GE(answer("DELETE /upload/" + std::string(name), serving.bearer()), 403) << name;
+  for (const char* name : {"own.ctpm", "changed.stl", "mesh.stl"}) EXPECT_TRUE(fs::exists(folder() / name)) << name;
+  EXPECT_TRUE(fs::exists(outer_.path() / "secret.ctpm"));
+  EXPECT_EQ(answer("DELETE /upload/mesh.stl", serving.bearer()), 200);
+  EXPECT_FALSE(fs::exists(folder() / "mesh.stl"));
+  EXPECT_EQ(answer("DELETE /upload/mesh.stl", serving.bearer()), 403) << "it is gone";
+  expect_it_goes_on(serving);
+}
+
 /// Largest resident memory of this process since forget_peak() [KiB].
 long peak_kib() {
   std::ifstream status("/proc/self/status");
