@@ -152,7 +152,7 @@ Reach BallContact::reach_of(const StateView& state, const BallMotion& ball) cons
   const auto add = [&](Vec3 place) { reach.distance = std::max(reach.distance, reach.add(place)); };
   const std::int32_t first = first_point_of(ball.hand);
   for (const std::int32_t point : state.touched) {
-    // The pressure on all vertices of its facet was gathered at each point.
+    // At each of these points the pressure on all vertices of a facet was gathered.
     if (point >= first && point - first < vertex_count_) {
       add(follower(point - first).of(state.position));
       for (const std::int32_t v : gathering_.gathered_at(point - first)) reach.add(follower(v).of(state.position));
