@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,9 +56,12 @@ class Look {
   /// Organs that touch lie beside each other, and overlap by some spheres at most; more are tissue at the same place
   /// twice.
   void at_overlaps() {
-    for (std::size_t i = 0; i < model_.organs.size(); ++i)
+    const std::size_t organs = model_.organs.size();
+    std::vector<std::vector<std::int32_t>> inside(organs);
+    for (std::size_t other = 0; other < organs; ++other) inside[other] = count_inside(other);
+    for (std::size_t i = 0; i < organs; ++i)
       for (std::size_t j = 0; j < i; ++j) {
-        const std::int32_t own = count_inside(i, j), other = count_inside(j, i);
+        const std::int32_t own = inside[j][i], other = inside[i][j];
         const double own_share = double(own) / model_.organs[i].count, share = double(other) / model_.organs[j].count;
         if (std::max(own_share, share) < kOverlap) continue;
         if (own_share >= share) warn_of_overlap(i, j, own);
@@ -88,23 +92,25 @@ class Look {
   Errors warnings;
 
  private:
-  /// Spheres of an organ that lie inside the surface of another one at rest, by 2.2 mm or more.
-  std::int32_t count_inside(std::size_t organ, std::size_t other) {
-    const auto has_surface = [&](std::size_t o) {
-      return o < model_.surfaces.size() && !model_.surfaces[o].triangle.empty();
-    };
-    if (!has_surface(other)) return 0;
+  /// Spheres of each organ that lie inside the surface of another one at rest, by 2.2 mm or more.
+  std::vector<std::int32_t> count_inside(std::size_t other) {
+    std::vector<std::int32_t> counts(model_.organs.size(), 0);
+    if (other >= model_.surfaces.size() || model_.surfaces[other].triangle.empty()) return counts;
     Box box(model_.surfaces[other].vertex.front());
     for (const Vec3& vertex : model_.surfaces[other].vertex) box.add(vertex);
-    std::vector<Vec3> near;
-    const OrganRange& range = model_.organs[organ];
-    for (std::int32_t i = range.first; i < range.first + range.count; ++i)
-      if (const Vec3 p = model_.rest_position[std::size_t(i)]; box.meets(Box(p))) near.push_back(p);
-    if (near.empty()) return 0;
-    const cutting::RestMap map(model_);
-    const cutting::TissueDepth depth(model_, map, other);
-    return std::int32_t(std::count_if(near.begin(), near.end(),
-                                      [&](Vec3 p) { return depth.at(other, p) >= cutting::TissueDepth::kBand; }));
+    // The depth of tissue takes time to make, and organs that lie beside each other need none.
+    std::optional<cutting::RestMap> map;
+    std::optional<cutting::TissueDepth> depth;
+    for (std::size_t organ = 0; organ < counts.size(); ++organ) {
+      const OrganRange& range = model_.organs[organ];
+      for (std::int32_t i = range.first; organ != other && i < range.first + range.count; ++i) {
+        const Vec3 p = model_.rest_position[std::size_t(i)];
+        if (!box.meets(Box(p))) continue;
+        if (!depth) depth.emplace(model_, map.emplace(model_), other);
+        if (depth->at(other, p) >= cutting::TissueDepth::kBand) ++counts[organ];
+      }
+    }
+    return counts;
   }
 
   void warn_of_overlap(std::size_t organ, std::size_t other, std::int32_t count) {

@@ -2,14 +2,16 @@ import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { AuthorScene } from "./author_scene";
 import { Brush } from "./brush";
 import type { Connection } from "./connection";
+import type { SceneDocument } from "./document";
 import { Filling } from "./filling";
 import { type GizmoMode, Gizmos, modesOf } from "./gizmos";
 import { type Imported, Findings, ImportForm, ImportResult } from "./import_form";
 import { Inspector } from "./inspector";
-import type { Item } from "./items";
+import { type Item, listOf } from "./items";
+import { findJson } from "./json_edit";
 import { Objects } from "./objects";
 import { Empty, Problems, Readings, Section, ShownCommand } from "./parts";
-import type { Listing } from "./protocol";
+import type { CameraView, Listing } from "./protocol";
 import { SceneEditor } from "./scene_editor";
 import type { Shown } from "./stage_scene";
 import { command, verdictOf } from "./text";
@@ -27,6 +29,11 @@ interface Desk {
   brush: Brush;
 }
 
+/** A scene keeps one organ. */
+function canRemove(item: Item | null, items: Item[]): boolean {
+  return item?.kind !== "organ" || items.filter(({ kind }) => kind === "organ").length > 1;
+}
+
 /** The organ that an item is, or belongs to. */
 function organOf(item: Item | null): number | null {
   return item?.path[0] === "organs" ? Number(item.path[1]) : null;
@@ -36,7 +43,7 @@ function organOf(item: Item | null): number | null {
 export function Author({ connection, listing, onTry, onChanged }: {
   connection: Connection;
   listing: Listing;
-  onTry: (scene: string, text: string) => void;
+  onTry: (scene: string, text: string, seen: CameraView) => void;
   onChanged: () => void;
 }) {
   const canvas = useRef<HTMLCanvasElement>(null), overlay = useRef<HTMLDivElement>(null);
@@ -59,7 +66,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
     const viewer = new Viewer(canvas.current), made = new AuthorScene(connection, viewer);
     const gizmos = new Gizmos(viewer, overlay.current), brush = new Brush(viewer);
     for (const hand of [gizmos, brush]) {
-      hand.onPreview = (values) => made.doc?.preview(values);
+      hand.onPreview = (values) => made.preview(values);
       hand.onCommit = () => made.doc?.commit();
     }
     brush.newest = () => made.items;
@@ -124,7 +131,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
     const press = (event: KeyboardEvent) => {
       const key = event.key.toLowerCase(), isEditing = (event.target as HTMLElement).closest(".editor") !== null;
       if (event.key === "Escape" && brushRadius !== null) setBrushRadius(null);
-      else if (event.key === "Delete" && item && item.kind !== "organ" && !(event.target as HTMLElement).closest("input, textarea, select, .editor")) remove(item);
+      else if (event.key === "Delete" && item && canRemove(item, items) && !(event.target as HTMLElement).closest("input, textarea, select, .editor")) remove(item);
       else if (event.target === canvas.current && key in kTurns && !event.ctrlKey && !event.metaKey && !event.altKey) desk?.viewer.turn(...kTurns[key]);
       else if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
       else if (key === "s") void save();
@@ -192,7 +199,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
       <div class="view">
         <canvas ref={canvas} tabIndex={0} aria-label={brushRadius !== null ? kPainting : scene?.shown ? `The scene ${scene.shown.view.name} at rest; A, D, W, S, + and - turn the view` : "No scene"} />
         <div class="handles" ref={overlay} />
-        {desk && doc && <ViewBar desk={desk} modes={modes} mode={used} onMode={setMode} onVersion={() => setVersion((v) => v + 1)} />}
+        {desk && doc && <ViewBar desk={desk} item={item} modes={modes} mode={used} onMode={setMode} onVersion={() => setVersion((v) => v + 1)} />}
         {!doc && !scene?.isLoading && (
           <Empty title="Drop a mesh of an organ here">
             <p>STL, OBJ, PLY and others, also volume meshes and segmentations. It is checked, repaired and filled with spheres, and becomes a scene that runs. Or choose a scene.</p>
@@ -206,7 +213,10 @@ export function Author({ connection, listing, onTry, onChanged }: {
       </div>
       <div class="time">
         {desk && scene && doc && <Toolbar scene={scene} onSave={() => void save()}
-          onLoad={() => settle(doc.reread())} onKeep={() => settle(doc.keep())} onTry={() => onTry(path, doc.text)} error={error} />}
+          onLoad={() => settle(doc.reread())} onKeep={() => settle(doc.keep())} onTry={() => onTry(path, doc.text, desk.viewer.seen())} onCopied={(copy) => {
+            onChanged();
+            open(copy);
+          }} error={error} />}
       </div>
       <aside class="side">
         {dropped ? (
@@ -227,11 +237,11 @@ export function Author({ connection, listing, onTry, onChanged }: {
               ))}
             </div>
             <div id="panel" class="panel" role="tabpanel" aria-labelledby={`tab-${panel}`} tabIndex={0}>
-              {panel === "place" && <Inspector scene={scene} item={item} viewer={desk!.viewer} onRemove={remove} />}
+              {panel === "place" && <Inspector scene={scene} item={item} viewer={desk!.viewer} onRemove={canRemove(item, items) ? remove : null} />}
               {panel === "filling" && <Filling connection={connection} scene={scene} chosen={organOf(item)} />}
-              {panel === "scene" && <>{imported && <ImportResult imported={imported} />}<About scene={scene} /></>}
+              {panel === "scene" && <>{imported && <ImportResult imported={imported} />}<About scene={scene} isImported={imported !== null} /></>}
             </div>
-            <SceneEditor scene={scene} />
+            <SceneEditor scene={scene} onSelect={select} />
           </>
         ) : <p class="hint">A scene is a JSON file with the unit in every key. It opens here with its organs, and its text beside them.</p>}
       </aside>
@@ -240,7 +250,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
 }
 
 /** What the picture shows, and what dragging in it does. */
-function ViewBar({ desk, modes, mode, onMode, onVersion }: { desk: Desk; modes: GizmoMode[]; mode: GizmoMode; onMode: (mode: GizmoMode) => void; onVersion: () => void }) {
+function ViewBar({ desk, item, modes, mode, onMode, onVersion }: { desk: Desk; item: Item | null; modes: GizmoMode[]; mode: GizmoMode; onMode: (mode: GizmoMode) => void; onVersion: () => void }) {
   const { scene, gizmos } = desk;
   return (
     <div class="view-bar">
@@ -252,6 +262,14 @@ function ViewBar({ desk, modes, mode, onMode, onVersion }: { desk: Desk; modes: 
           <div class="buttons joined" role="group" aria-label="What dragging does">
             {modes.map((name) => <button key={name} type="button" aria-pressed={mode === name} onClick={() => onMode(name)}>{name}</button>)}
           </div>
+        )}
+        {item?.kind === "organ" && (
+          <label title="Its anchors, and the tools, probes, loads and forbidden regions that no other organ is nearer to, go where it goes">
+            <input type="checkbox" checked={scene.isTakingAlong} onChange={(e) => {
+              scene.isTakingAlong = e.currentTarget.checked;
+              onVersion();
+            }} /> take along what belongs to it
+          </label>
         )}
         <label title="What is dragged by its handle follows the surface">
           <input type="checkbox" checked={gizmos.isSnapping} onChange={(e) => {
@@ -265,15 +283,17 @@ function ViewBar({ desk, modes, mode, onMode, onVersion }: { desk: Desk; modes: 
 }
 
 /** What is done with the whole scene. */
-function Toolbar({ scene, onSave, onLoad, onKeep, onTry, error }: {
+function Toolbar({ scene, onSave, onLoad, onKeep, onTry, onCopied, error }: {
   scene: AuthorScene;
   onSave: () => void;
   onLoad: () => void;
   onKeep: () => void;
   onTry: () => void;
+  onCopied: (path: string) => void;
   error: Error | null;
 }) {
   const doc = scene.doc!;
+  const [isCopying, setCopying] = useState(false);
   const { errors, warnings } = scene.problems;
   const tools = scene.shown?.view.tools.length ?? 0;
   return (
@@ -288,9 +308,11 @@ function Toolbar({ scene, onSave, onLoad, onKeep, onTry, error }: {
         </span>
         <div class="buttons">
           <button type="button" disabled={!doc.isChanged} title="Ctrl+S" onClick={onSave}>Save</button>
+          <button type="button" aria-expanded={isCopying} onClick={() => setCopying(!isCopying)}>Save a copy…</button>
           <button type="button" class="main" disabled={tools === 0 || errors.length > 0} title={tools === 0 ? "The scene has no tool yet" : "Nothing is recorded"} onClick={onTry}>Try it</button>
         </div>
       </div>
+      {isCopying && <CopyForm key={doc.path} doc={doc} onClose={() => setCopying(false)} onCopied={onCopied} />}
       {doc.onDisk === "same" ? error && <div class="conflict"><Problems error={error} /></div> : (
         <div class="conflict" role="alert">
           <p>{doc.onDisk === "gone" ? `${doc.path} is no longer there.` : `${doc.path} was changed on the disk since it was read here.`}</p>
@@ -304,8 +326,29 @@ function Toolbar({ scene, onSave, onLoad, onKeep, onTry, error }: {
   );
 }
 
+/** The text as it is now, under another name: beside the file, so that it finds the same meshes. */
+function CopyForm({ doc, onClose, onCopied }: { doc: SceneDocument; onClose: () => void; onCopied: (path: string) => void }) {
+  const [, folder, stem] = /^(.*\/)?(.*?)(?:\.json)?$/.exec(doc.path)!;
+  const [name, setName] = useState(`${stem}-2`), [error, setError] = useState<Error | null>(null);
+  const path = `${folder ?? ""}${name}.json`;
+  const isName = /^[^/\\]+$/.test(name);
+  return (
+    <form class="conflict" onSubmit={(e) => {
+      e.preventDefault();
+      doc.saveCopy(path).then(() => (onClose(), onCopied(path)), setError);
+    }}>
+      <label class="copy-name">{folder}<input value={name} aria-label="Name of the copy, without .json" onInput={(e) => setName(e.currentTarget.value)} />.json</label>
+      <Problems error={error} />
+      <div class="buttons">
+        <button type="submit" class="main" disabled={!isName}>Save the copy</button>
+        <button type="button" onClick={onClose}>Back</button>
+      </div>
+    </form>
+  );
+}
+
 /** What the program says of the scene. */
-function About({ scene }: { scene: AuthorScene }) {
+function About({ scene, isImported }: { scene: AuthorScene; isImported: boolean }) {
   const { shown, doc } = scene;
   return (
     <>
@@ -319,12 +362,26 @@ function About({ scene }: { scene: AuthorScene }) {
           <ShownCommand text={command("check", doc!.path)} />
         </Section>
       )}
+      {listOf(doc!.lastValue, "organs").length > 1 && <Meeting scene={scene} />}
       {shown?.organs.map((organ, i) => organ.report && (
         <Section key={i} title={`${shown.view.organs[i].name}: its mesh`}>
-          <Findings findings={organ.findings} />
+          {isImported && organ.findings.length === 0 ? <p class="hint">As the import wrote it: what it repaired is said above.</p> : <Findings findings={organ.findings} />}
           <pre>{organ.report}</pre>
         </Section>
       ))}
     </>
+  );
+}
+
+/** Whether several organs push each other away. */
+function Meeting({ scene: { doc } }: { scene: AuthorScene }) {
+  const meets = findJson(doc!.lastValue, ["organs_meet"]) === true;
+  return (
+    <Section title="Several organs">
+      <label class="tick">
+        <input type="checkbox" checked={meets} onChange={() => doc!.set([[["organs_meet"], !meets]])} />
+        <span>they touch each other; otherwise they pass through each other</span>
+      </label>
+    </Section>
   );
 }

@@ -1,5 +1,7 @@
 // The scene that an author works on: its text, and what the program makes of it, kept together while the text changes.
+import type { JSONPath } from "jsonc-parser";
 import * as three from "three";
+import { takenAlong } from "./belongings";
 import type { Connection } from "./connection";
 import { SceneDocument } from "./document";
 import { type Item, itemsOf, listOf, type OrganPose, organPoses } from "./items";
@@ -64,6 +66,7 @@ export class AuthorScene {
   shown: ShownScene | null = null;
   stage: StageScene | null = null;
   how: Shown = "surface";
+  isTakingAlong = true; // what belongs to an organ goes with it
   error: Error | null = null; // why the text cannot be loaded
   isLoading = false;
   filled: number | null = null; // share of the organs' meshes that are filled; null: not told yet
@@ -148,6 +151,13 @@ export class AuthorScene {
   poseOrgans(): void {
     const poses = organPoses(this.doc?.lastValue);
     this.poses.forEach((was, i) => poses[i] && this.stage?.poseOrgan(i, was, poses[i]));
+  }
+
+  /** Changes values while a change goes on, as the document's preview() does; an organ takes along what belongs to it. */
+  preview(values: [JSONPath, Json | undefined][]): void {
+    const { doc, stage } = this;
+    if (!doc) return;
+    doc.preview([...values, ...(this.isTakingAlong && stage ? takenAlong(values, doc.begun, stage.organSpheres, this.poses) : [])]);
   }
 
   show(how: Shown): void {

@@ -66,6 +66,11 @@ export class SceneDocument {
     return this.value ?? this.valid;
   }
 
+  /** The value of the text before the change that goes on, if one does. */
+  get begun(): Json | undefined {
+    return this.before === null ? this.value : parseJson(this.before);
+  }
+
   get isChanged(): boolean {
     return this.text !== this.saved;
   }
@@ -119,6 +124,11 @@ export class SceneDocument {
     this.saved = text, this.onDisk = "same";
     this.keepDraft();
     this.onChange();
+  }
+
+  /** Writes the text as it is now into a file that is not there yet; this one stays as it is. */
+  async saveCopy(path: string): Promise<void> {
+    await this.connection.call("scene.write", { path, text: this.text, revision: kNoFile });
   }
 
   /** Goes back to what the file says now; undo brings the changes back. */

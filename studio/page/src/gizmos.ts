@@ -15,6 +15,7 @@ export type GizmoMode = "move" | "turn" | "size";
 const kEdge = 12; // where a handle stays whose item is outside the picture [px]
 const kStill = 3; // a press that moves less is a click [px]
 const kNudge = 0.001, kFineNudge = 0.0001; // of an arrow key [m]
+const kRoomBelow = 40; // of the picture, for a name below its handle [px]
 const kClearance = 0.002; // between a tool and the surface that it was dragged to [m]
 
 /** What an item can do besides being moved. */
@@ -165,9 +166,12 @@ export class Gizmos {
       const x = three.MathUtils.clamp(at.x, edge, width - edge), y = three.MathUtils.clamp(at.y, edge, height - edge);
       handle.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
       const isLeft = x > width - 120;
+      // Arrows, rings or cubes stand beside the one that is chosen: its name makes room for them.
+      const isBelow = key === this.selected && y < height - kRoomBelow;
       handle.classList.toggle("left", isLeft);
+      handle.classList.toggle("below", isBelow);
       const name = handle.firstElementChild as HTMLElement;
-      const label = { x, y, width: name.offsetWidth, height: name.offsetHeight, isLeft };
+      const label = { x, y, width: name.offsetWidth, height: name.offsetHeight, isLeft, isBelow };
       if (key === this.selected) named.unshift([name, label]); // it stays; the others make room
       else named.push([name, label]);
     }

@@ -8,12 +8,12 @@ import { Section } from "./parts";
 import type { Viewer } from "./viewer";
 
 /** What the selected thing is, in numbers. */
-export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScene; item: Item | null; viewer: Viewer; onRemove: (item: Item) => void }) {
+export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScene; item: Item | null; viewer: Viewer; onRemove: ((item: Item) => void) | null }) {
   const { doc } = scene;
   if (!doc || !item) {
     return <p class="hint">Choose something in the list or in the picture. It can be dragged over the surface, moved by its arrows, or given numbers here.</p>;
   }
-  const preview = (values: Values) => doc.preview(values), done = () => doc.commit();
+  const preview = (values: Values) => scene.preview(values), done = () => doc.commit();
   const at = (...more: (string | number)[]) => [...item.path, ...more];
   const read = (...more: (string | number)[]): Json | undefined => findJson(doc.lastValue, at(...more));
   const vector = (label: string, key: (string | number)[], otherwise: number[], unit = "mm", step = 0.5, least?: number) => {
@@ -30,7 +30,7 @@ export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScen
   };
   const place = item.place ? mmVector(item.place) : [0, 0, 0];
   return (
-    <Section title={`${item.kind}: ${item.name}`} aside={item.kind !== "organ" && (
+    <Section title={`${item.kind}: ${item.name}`} aside={onRemove && (
       <button type="button" class="quiet remove" onClick={() => onRemove(item)}>remove</button>
     )}>
       {item.kind !== "anchor" && (

@@ -22,7 +22,7 @@ export interface Item {
 }
 
 type Values = [JSONPath, Json | undefined][];
-type Fields = { [key: string]: Json };
+export type Fields = { [key: string]: Json };
 
 /** A length as it is written [mm]: to a hundredth. */
 export function mm(metres: number): number {
@@ -31,11 +31,11 @@ export function mm(metres: number): number {
 export function mmVector(v: three.Vector3): number[] {
   return [mm(v.x), mm(v.y), mm(v.z)];
 }
-function direction(v: three.Vector3): number[] {
+export function direction(v: three.Vector3): number[] {
   return v.toArray().map((x) => Math.round(x * 1e4) / 1e4 + 0);
 }
 
-function isFields(value: Json | undefined): value is Fields {
+export function isFields(value: Json | undefined): value is Fields {
   return typeof value === "object" && value !== null && !Array.isArray(value);
 }
 export function listOf(scene: Json | undefined, key: string): Fields[] {
@@ -45,11 +45,11 @@ export function listOf(scene: Json | undefined, key: string): Fields[] {
 function numbersOf(value: Json | undefined): number[] | null {
   return Array.isArray(value) && value.length === 3 && value.every((x) => typeof x === "number") ? (value as number[]) : null;
 }
-function metresOf(value: Json | undefined): three.Vector3 | null {
+export function metresOf(value: Json | undefined): three.Vector3 | null {
   const numbers = numbersOf(value);
   return numbers && new three.Vector3(...numbers).multiplyScalar(1e-3);
 }
-function lengthOf(value: Json | undefined, otherwise: number): number {
+export function lengthOf(value: Json | undefined, otherwise: number): number {
   return typeof value === "number" && value > 0 ? value * 1e-3 : otherwise;
 }
 function textOf(value: Json | undefined, otherwise: string): string {

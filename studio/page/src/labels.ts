@@ -7,10 +7,12 @@ export interface Label {
   width: number; // 0: its name is not shown
   height: number;
   isLeft: boolean; // of its handle
+  isBelow: boolean; // it, where arrows stand around it
 }
 
 export const kBeside = 11; // from a handle's middle to its name [px]
 const kDot = 10; // from a handle's middle to its edge [px]
+const kBelow = 13; // from a handle's middle to a name below it [px]
 const kBetween = 2; // two names [px]
 
 interface Box {
@@ -30,7 +32,8 @@ export function apart(labels: Label[], height: number): number[] {
     if (label.width === 0) return 0;
     const others = dots.filter((_, j) => j !== i);
     const boxAt = (down: number): Box => {
-      const left = label.isLeft ? label.x - kBeside - label.width : label.x + kBeside, top = label.y + down - label.height / 2;
+      const left = label.isBelow ? label.x - label.width / 2 : label.isLeft ? label.x - kBeside - label.width : label.x + kBeside;
+      const top = label.y + down + (label.isBelow ? kBelow : -label.height / 2);
       return { left, top, right: left + label.width, bottom: top + label.height };
     };
     const isFree = (down: number, boxes: Box[]) => {

@@ -94,9 +94,9 @@ function App() {
           room === "review" ? (
             <Review connection={connection} listing={listing} place={place} onPlace={(there) => writePlace("review", there)} />
           ) : room === "author" ? (
-            <Author connection={connection} listing={listing} onChanged={list} onTry={(scene, text) => go("train", { scene, text })} />
+            <Author connection={connection} listing={listing} onChanged={list} onTry={(scene, text, seen) => go("train", { scene, text, seen })} />
           ) : (
-            <Train connection={connection} listing={listing} tryScene={place.scene} tryText={place.text} onChanged={list}
+            <Train connection={connection} listing={listing} tryScene={place.scene} tryText={place.text} tryView={place.seen} onChanged={list}
               onReview={(there) => go("review", there)} onAuthor={() => go("author", {})} />
           )
         ) : (

@@ -1,3 +1,4 @@
+import { useState } from "preact/hooks";
 import * as three from "three";
 import type { JSONPath } from "jsonc-parser";
 import type { AuthorScene } from "./author_scene";
@@ -7,6 +8,7 @@ import { freeName, type Item, type ItemKind, itemsOf, listOf, mm, mmVector } fro
 import { applied, type Json, parseJson, setValue } from "./json_edit";
 import type { Viewer } from "./viewer";
 
+const kStroke = 3; // balls that are shown as one row
 const kTitles: [ItemKind, string][] = [["organ", "Organs"], ["anchor", "Anchors"], ["tool", "Tools"], ["probe", "Probes"], ["camera", "Cameras"]];
 
 /** What can be added, and what it begins as. */
@@ -60,6 +62,41 @@ export function addItem(scene: AuthorScene, viewer: Viewer, kind: Exclude<ItemKi
   return path.join("/");
 }
 
+/** Items row by row: balls of one size that follow each other in an organ, as the brush leaves them, share one. */
+function rowsOf(items: Item[]): Item[][] {
+  const rows: Item[][] = [];
+  for (const item of items) {
+    const last = rows.at(-1)?.[0];
+    const goesOn = last?.shape === "sphere" && item.shape === "sphere" && last.path[1] === item.path[1] && last.size.x === item.size.x;
+    if (goesOn) rows.at(-1)!.push(item);
+    else rows.push([item]);
+  }
+  return rows.flatMap((row) => (row.length < kStroke ? row.map((item) => [item]) : [row]));
+}
+
+function Row({ item, selected, onSelect }: { item: Item; selected: string; onSelect: (key: string) => void }) {
+  return (
+    <li>
+      <button type="button" aria-current={item.key === selected} title={item.name} onClick={() => onSelect(item.key)}><i class={`dot ${item.kind}`} /><span>{item.name}</span></button>
+    </li>
+  );
+}
+
+/** What was painted: many balls in one row, which opens. */
+function Stroke({ balls, selected, onSelect, onRemove }: { balls: Item[]; selected: string; onSelect: (key: string) => void; onRemove: () => void }) {
+  const [isOpen, setOpen] = useState(false);
+  const name = `${balls.length} balls of ${mm(balls[0].size.x)} mm`;
+  return (
+    <li class="stroke">
+      <details open={isOpen || balls.some(({ key }) => key === selected)} onToggle={(e) => setOpen(e.currentTarget.open)}>
+        <summary><i class="dot anchor" /><span>{name}</span></summary>
+        <ul>{balls.map((ball) => <Row key={ball.key} item={ball} selected={selected} onSelect={onSelect} />)}</ul>
+        <button type="button" class="quiet" aria-label={`Remove ${name}`} onClick={onRemove}>remove them all</button>
+      </details>
+    </li>
+  );
+}
+
 export function Objects({ scene, viewer, items, selected, onSelect, brushRadius, onBrush }: {
   scene: AuthorScene;
   viewer: Viewer;
@@ -76,11 +113,12 @@ export function Objects({ scene, viewer, items, selected, onSelect, brushRadius,
         <section key={kind}>
           <h2>{title}</h2>
           <ul>
-            {items.filter((item) => item.kind === kind).map((item) => (
-              <li key={item.key}>
-                <button type="button" aria-current={item.key === selected} title={item.name} onClick={() => onSelect(item.key)}><i class={`dot ${kind}`} /><span>{item.name}</span></button>
-              </li>
-            ))}
+            {rowsOf(items.filter((item) => item.kind === kind)).map((row) => row.length === 1
+              ? <Row key={row[0].key} item={row[0]} selected={selected} onSelect={onSelect} />
+              : <Stroke key={row[0].key} balls={row} selected={selected} onSelect={onSelect} onRemove={() => {
+                scene.doc!.set(row.map((ball): [JSONPath, undefined] => [ball.path, undefined]).reverse()); // the last of the list first
+                onSelect("");
+              }} />)}
           </ul>
           {kind !== "organ" && (
             <div class="buttons add">

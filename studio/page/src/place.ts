@@ -1,11 +1,12 @@
 // Where the page is, in its address.
-import type { ComparisonResult } from "./protocol";
+import type { CameraView, ComparisonResult } from "./protocol";
 
 export type Room = "author" | "train" | "review";
 
 export interface Place {
   scene?: string; // to try at once, in Train
   text?: string; // of that scene, as its author has it now
+  seen?: CameraView; // the scene that is tried
   session?: string;
   beside?: string;
   ahead?: number; // of the session beside [s]; none: both begin at first contact

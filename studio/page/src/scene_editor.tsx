@@ -1,10 +1,17 @@
 import { useEffect, useRef } from "preact/hooks";
 import type { AuthorScene } from "./author_scene";
+import type { Item } from "./items";
 import { placeOf } from "./json_editor";
 import type { Problem } from "./protocol";
 
+/** The thing whose path a message begins with. */
+function thingOf({ message }: Problem, items: Item[]): Item | undefined {
+  const [, path] = /^\/(\S+?):? /.exec(message) ?? [];
+  return path === undefined ? undefined : items.filter(({ key }) => path === key || path.startsWith(`${key}/`)).sort((a, b) => b.key.length - a.key.length)[0];
+}
+
 /** The text of a scene, judged by the program while it is written. */
-export function SceneEditor({ scene }: { scene: AuthorScene }) {
+export function SceneEditor({ scene, onSelect }: { scene: AuthorScene; onSelect: (key: string) => void }) {
   const frame = useRef<HTMLDivElement>(null);
   const { doc } = scene;
   useEffect(() => {
@@ -15,12 +22,13 @@ export function SceneEditor({ scene }: { scene: AuthorScene }) {
   }, [doc]);
   const { errors, warnings } = scene.problems;
   const list = (problems: Problem[], kind: string) => problems.map((problem, i) => {
-    const place = placeOf(problem);
+    const place = placeOf(problem), thing = thingOf(problem, scene.items);
     return (
       <li key={`${kind}${i}`}>
         <button type="button" class={kind} disabled={!place} onClick={() => doc?.goToProblem(problem)}>
           {place && <span class="number">{place.line}:{place.column}</span>} {problem.message}{problem.hint && ` (${problem.hint})`}
         </button>
+        {thing && <button type="button" class="quiet" title="Choose it" onClick={() => onSelect(thing.key)}>{thing.name}</button>}
       </li>
     );
   });

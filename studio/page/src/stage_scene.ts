@@ -134,6 +134,15 @@ export class StageScene {
     return true;
   }
 
+  /** Draws these tools alone, each at its pose, until the next frame. */
+  showTools(held: { tool: number; hand: three.Vector3; turn: three.Quaternion }[]): void {
+    for (const tool of this.tools) tool.visible = false;
+    for (const { tool, hand, turn } of held) {
+      const mesh = this.tools[tool];
+      if (mesh) mesh.visible = true, mesh.position.copy(hand), mesh.quaternion.copy(turn);
+    }
+  }
+
   /** Of the organs, only what faces a viewer is drawn. */
   drawFacing(viewer: three.Vector3): void {
     for (const organ of this.organs) organ.drawFacing(viewer);

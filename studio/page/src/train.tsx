@@ -4,7 +4,7 @@ import type { Connection } from "./connection";
 import { DeviceForm } from "./device";
 import { deviceParameters, deviceWords, storedDevice, storeDevice } from "./device_choice";
 import { Empty, HeldButton, Problems, Readings, Section, ShownCommand, Working } from "./parts";
-import { type ComparisonResult, type EndedTraining, type Listing, type Motion, problemText } from "./protocol";
+import { type CameraView, type ComparisonResult, type EndedTraining, type Listing, type Motion, problemText } from "./protocol";
 import { behind, command, millimetres, newtons, seconds, tickRows, underMs } from "./text";
 import type { Place } from "./place";
 import { ForceSound } from "./sound";
@@ -40,11 +40,12 @@ function freeName(listing: Listing): string {
   for (let i = 1; ; ++i) if (!taken.has(`mine-${i}.ctpm`)) return `mine-${i}.ctpm`;
 }
 
-export function Train({ connection, listing, tryScene, tryText, onReview, onAuthor, onChanged }: {
+export function Train({ connection, listing, tryScene, tryText, tryView, onReview, onAuthor, onChanged }: {
   connection: Connection;
   listing: Listing;
   tryScene: string | undefined; // at once, and nothing is recorded
   tryText: string | undefined; // of that scene, as its author has it now
+  tryView: CameraView | undefined; // as its author sees it
   onReview: (place: Place) => void;
   onAuthor: () => void; // back to the scene that was tried
   onChanged: () => void;
@@ -105,14 +106,14 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onAuth
     loading.current = new AbortController();
     try {
       await trainer.begin(path, path === tryScene && !output ? tryText : undefined, output || undefined,
-        path === tryScene ? undefined : deviceParameters(device), loading.current.signal);
+        path === tryScene ? undefined : deviceParameters(device), path === tryScene ? tryView : undefined, loading.current.signal);
       setPhase("running");
       canvas.current?.focus();
     } catch (failure) {
       setError(failure as Error);
       setPhase("choose");
     }
-  }, [trainer, output, device, tryScene, tryText]);
+  }, [trainer, output, device, tryScene, tryText, tryView]);
 
   useEffect(() => {
     if (trainer && tryScene) void begin(tryScene);
@@ -282,7 +283,7 @@ export function Train({ connection, listing, tryScene, tryText, onReview, onAuth
               </div>
             )}
             <span class="recorded">{output ? <><i aria-hidden="true" /> records {output}</> : "not recorded"}</span>
-            <output class="clock">{seconds(frame?.time ?? 0, 1)}</output>
+            <output class="clock">{trainer.hasBegun ? seconds(frame?.time ?? 0, 1) : "begins when you take up the tool"}</output>
             {!trainer.awaited && isTouch && (
               <div class="buttons held" role="group" aria-label="Depth and turning">
                 {kHeld.map(([text, key]) => <HeldButton key={key} text={text} onHeld={() => trainer.press(key, false)} />)}

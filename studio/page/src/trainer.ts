@@ -2,7 +2,7 @@ import * as three from "three";
 import type { Binary, Connection } from "./connection";
 import { readGamepad } from "./gamepad";
 import { orientationOf } from "./pose";
-import type { BegunTraining, EndedTraining, Frame, HandFrame, Motion, SceneView, Vector } from "./protocol";
+import type { BegunTraining, CameraView, EndedTraining, Frame, HandFrame, Motion, SceneView, Vector } from "./protocol";
 import { StageScene } from "./stage_scene";
 import { firstCamera, type Viewer } from "./viewer";
 
@@ -41,7 +41,7 @@ export class Trainer {
   started: number | null = null; // when the hand was taken up [ms]
   poses = 0; // sent so far
   hasGamepad = false;
-  isHeld = false; // by the pointer, which the hand follows from then on
+  hasBegun = false; // the hand has moved or was taken hold of, or a device leads: from then on its session runs
   ghostAhead = kGhostAhead; // of the place on the expert's path that the tool has reached [s]
   ghostAway: number | null = null; // from the tool [m]; null: there is no ghost
   awaited = ""; // where the device is that leads; empty: the page leads
@@ -49,6 +49,7 @@ export class Trainer {
   onFrame: () => void = () => {};
   onEnded: (ended: EndedTraining) => void = () => {};
   onFailing: (problem: string) => void = () => {}; // what is recorded cannot be saved now
+  private held = false;
   private view: SceneView | null = null;
   private readonly hands = [makeHand(), makeHand()];
   private readonly box = new three.Box3();
@@ -66,6 +67,15 @@ export class Trainer {
     });
     connection.onEvent("train_waits", (content) => this.onWaiting((content as { text: string }).text));
     connection.onEvent("train_fails", (content) => this.onFailing((content as { text: string }).text));
+  }
+
+  /** By the pointer, which the hand follows from then on. */
+  get isHeld(): boolean {
+    return this.held;
+  }
+  set isHeld(isHeld: boolean) {
+    this.held = isHeld;
+    this.hasBegun ||= isHeld;
   }
 
   get isRunning(): boolean {
@@ -104,12 +114,12 @@ export class Trainer {
   }
 
   /** Loads a scene and takes the tools in the hands, unless a `device` leads. `text` is taken in place of its file's;
-      `output` undefined: nothing is recorded. */
-  async begin(scene: string, text: string | undefined, output: string | undefined, device: object | undefined, signal: AbortSignal): Promise<BegunTraining> {
+      `output` undefined: nothing is recorded. `seen`: from where; undefined: as firstCamera(). */
+  async begin(scene: string, text: string | undefined, output: string | undefined, device: object | undefined, seen: CameraView | undefined, signal: AbortSignal): Promise<BegunTraining> {
     this.clear();
     const begun = await this.connection.call<BegunTraining>("train.begin",
       { scene, text, output, device, stage: kTrainStage, most_speed_m_per_s: kGuardSpeed }, { signal });
-    this.awaited = begun.awaited, this.isHeld = false;
+    this.awaited = begun.awaited, this.isHeld = false, this.hasBegun = begun.awaited !== "";
     // A hand that is not led here leaves the mouse free to look around.
     const { controls } = this.viewer;
     controls.enableZoom = this.awaited !== "";
@@ -119,7 +129,7 @@ export class Trainer {
     this.scene = new StageScene(begun.view);
     this.scene.onFrame = (frame) => this.showGhost(frame);
     this.viewer.set(kTrainStage, this.scene);
-    const camera = firstCamera(begun.view);
+    const camera = seen ?? firstCamera(begun.view);
     if (camera) this.viewer.look(camera);
     for (const message of this.pending.splice(0)) this.take(message);
     if (!this.awaited) this.takeUp();
@@ -151,7 +161,8 @@ export class Trainer {
   setTool(tool: number): void {
     const count = this.view?.tools.length ?? 0;
     if (tool < count && !this.isTaken(tool)) this.own.tool = tool;
-    this.send();
+    if (this.hasBegun) this.send();
+    else this.showWaiting();
   }
 
   /** Where the tool in the hand that is led is drawn, in pixels of the picture; null: it is not in it. */
@@ -194,7 +205,7 @@ export class Trainer {
     };
     const move = moves[key], turn = turns[key.toLowerCase()];
     if (move) this.moveBy(...move);
-    else if (turn) this.own.turn.multiply(new three.Quaternion().setFromAxisAngle(new three.Vector3(...turn), kTurnStep * (isFine ? 0.25 : 1)));
+    else if (turn) this.hasBegun = true, this.own.turn.multiply(new three.Quaternion().setFromAxisAngle(new three.Vector3(...turn), kTurnStep * (isFine ? 0.25 : 1)));
     else if (key.toLowerCase() === "x" && this.handCount > 1) this.lead(1 - this.led);
     else if (/^[1-9]$/.test(key)) this.setTool(Number(key) - 1);
     else return false;
@@ -207,6 +218,7 @@ export class Trainer {
     const pad = readGamepad();
     this.hasGamepad = pad !== null;
     if (!pad) return;
+    this.hasBegun ||= Object.values(pad).some((way) => way !== 0);
     const time = Math.min(performance.now() - this.sentAt, 50) / 1e3, way = kPadSpeed * time * this.gain();
     if (pad.right || pad.up || pad.deep) this.shift(way * pad.right, way * pad.up, way * pad.deep);
     const turn = (axis: Vector, angle: number) => this.own.turn.multiply(new three.Quaternion().setFromAxisAngle(new three.Vector3(...axis), angle));
@@ -232,6 +244,7 @@ export class Trainer {
 
   private moveBy(right: number, up: number, deep: number): void {
     if (!this.isRunning) return;
+    this.hasBegun = true;
     this.shift(right, up, deep);
     this.send();
   }
@@ -297,7 +310,7 @@ export class Trainer {
     this.poses = 0;
     this.reached = 0;
     this.timer = setInterval(() => (this.steer(), this.send()), kInterval);
-    this.send();
+    this.showWaiting();
   }
 
   private release(): void {
@@ -305,8 +318,15 @@ export class Trainer {
     this.timer = null;
   }
 
+  /** Draws the tools where they wait for their hands. */
+  private showWaiting(): void {
+    this.scene?.showTools(this.hands.slice(0, this.handCount));
+    this.viewer.draw();
+  }
+
   private send(): void {
     if (!this.isRunning) return;
+    if (!this.hasBegun) return;
     const now = performance.now();
     const reach = (kMostSpeed * Math.min(now - this.sentAt, 50)) / 1e3;
     this.sentAt = now;
@@ -343,6 +363,7 @@ export class Trainer {
       this.scene.setGhost(pose);
       this.ghostAway = pose && pose[0] >= 0 ? distance(pose, frame.position) : null;
     }
+    if (!this.hasBegun) this.showWaiting();
     this.onFrame();
   }
 }

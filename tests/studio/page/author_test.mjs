@@ -1,11 +1,11 @@
 // An author in a browser: author_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { cpSync, existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
 import { largeMesh } from "./large_mesh.mjs";
-import { ctpm, ctpmBeside, leave, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings, step, takeUp, until } from "./browser.mjs";
+import { ctpm, ctpmBeside, leave, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings, step, until } from "./browser.mjs";
 
 let folder, studio, page;
 
@@ -261,113 +261,6 @@ step("the slider fills again: spheres, time per tick, scatter", async () => {
   await picture(page, "author-scatter");
   assert.deepEqual(await seriousFindings(page), []);
   await button("surface").click();
-});
-
-step("a second mesh becomes an organ of the scene, which is moved by its handle", async () => {
-  const before = await text();
-  const mesh = readFileSync(join(paths.source, "scenes", "organs", "kidney.obj"));
-  await page.setInputFiles(".pick input", { name: "other-kidney.obj", mimeType: "model/obj", buffer: mesh });
-  await page.click("aside label:has-text('an organ of')");
-  const shown = await page.locator("aside .command code").innerText(), other = makeFolder();
-  await button("Import", "aside").click();
-  await page.waitForSelector("aside .good:has-text('spheres')");
-  await settled();
-  const { organs, cameras } = await scene();
-  // The command that it showed adds the same organ at the same place.
-  for (const file of [kScene, ...JSON.parse(before).organs.map(({ mesh }) => mesh), "other-kidney.obj"]) cpSync(join(folder, file), join(other, file));
-  writeFileSync(join(other, kScene), before);
-  const done = ctpm(other, ...shown.split(" ").slice(1), "--radius-mm", String(organs[1].fill.radius_mm));
-  assert.equal(done.code, 0, `${shown}: ${done.err}`);
-  const added = JSON.parse(readFileSync(join(other, kScene), "utf8")).organs;
-  assert.deepEqual(added.map(({ name }) => name), ["kidney", "kidney-2"]);
-  for (const [i, at] of added[1].at_mm.entries()) assert.ok(Math.abs(at - organs[1].at_mm[i]) < 1, `${added[1].at_mm} and ${organs[1].at_mm}`);
-  assert.deepEqual({ ...added[1].material, fitted_for: 0 }, { ...organs[1].material, fitted_for: 0 });
-  rmSync(other, { recursive: true });
-  assert.deepEqual(organs.map(({ name }) => name), ["kidney", "kidney-2"]); // what they are, not what their files are called
-  // The camera that the import left sees both, as a picture of the command does, and so does Author.
-  const [was, ...others] = JSON.parse(before).cameras;
-  assert.deepEqual(cameras.slice(1), others);
-  const far = ({ eye_mm, target_mm }) => Math.hypot(...eye_mm.map((x, i) => x - target_mm[i]));
-  assert.ok(far(cameras[0]) > 1.2 * far(was) && cameras[0].target_mm[0] > was.target_mm[0] + 10, JSON.stringify(cameras));
-  const canvas = await page.locator(".view > canvas").boundingBox();
-  for (const name of ["kidney", "kidney-2"]) {
-    await page.locator(".objects button", { has: page.locator(`span:text-is("${name}")`) }).click();
-    const { x, y } = await centreOf(handle(name));
-    assert.ok(x > canvas.x + 20 && x < canvas.x + canvas.width - 20 && y > canvas.y + 20 && y < canvas.y + canvas.height - 20, `${name}: ${x}, ${y}`);
-  }
-  await page.click(".objects button:has-text('kidney-2')");
-  await page.waitForTimeout(300);
-  await picture(page, "author-two-organs");
-  // The filling begins with the organ that was chosen; a tool has none, and shows its place.
-  await page.click("#tab-filling");
-  assert.equal(await page.locator("#panel h2").first().textContent(), "kidney-2: its spheres");
-  assert.equal(await page.locator("#panel h2").nth(1).textContent(), "kidney: its spheres");
-  await page.click(".objects button:has-text('scalpel')");
-  assert.equal(await page.locator("#tab-place").getAttribute("aria-selected"), "true");
-  await page.click(".objects button:has-text('kidney-2')");
-  await settled();
-  await drag(await centreOf(handle("kidney-2")), { x: -20, y: -30 });
-  const moved = (await scene()).organs[1].at_mm;
-  assert.notDeepEqual(moved, organs[1].at_mm);
-  await settled();
-  assert.deepEqual((await save()).organs[1].at_mm, moved);
-  // Both are in the history: what the mouse did, and the import.
-  await page.keyboard.press("Control+z");
-  assert.deepEqual((await scene()).organs[1].at_mm, organs[1].at_mm);
-  await page.keyboard.press("Control+z");
-  assert.equal(await text(), before);
-  await page.keyboard.press("Control+Shift+z");
-  await page.keyboard.press("Control+Shift+z");
-  await settled();
-});
-
-step("an organ is turned by its rings and sized by its cubes, and by its text", async () => {
-  const before = await text(), organ = async () => (await scene()).organs[1];
-  const numbers = (nth) => page.locator("#panel .vector").nth(nth).locator("input").evaluateAll((inputs) => inputs.map((input) => Number(input.value)));
-  await page.click(".objects button:has-text('kidney-2')");
-  await button("turn").click();
-  const middle = await centreOf(handle("kidney-2"));
-  await drag({ x: middle.x + 18, y: middle.y - 14 }, { x: 60, y: 30 });
-  const turned = await organ(), after = await centreOf(handle("kidney-2"));
-  assert.ok(Math.max(...turned.turn_deg.map(Math.abs)) > 10, `${turned.turn_deg}`);
-  assert.ok(Math.hypot(after.x - middle.x, after.y - middle.y) < 2, "its middle stays where it is");
-  assert.deepEqual(await numbers(1), turned.turn_deg);
-  await settled();
-  await picture(page, "author-organ-turned");
-  await button("size").click();
-  const from = await centreOf(handle("kidney-2"));
-  await drag({ x: from.x + 45, y: from.y }, { x: 30, y: 0 });
-  const sized = await organ();
-  assert.ok(sized.scale > 1.2, `${sized.scale}`);
-  await settled();
-  await picture(page, "author-organ-sized");
-  // The same by its text, which the numbers follow; the program takes what was made.
-  await write((await text()).replace(`"scale": ${sized.scale}`, '"scale": 1.1'));
-  await settled();
-  await page.click(".objects button:has-text('kidney-2')");
-  await page.waitForFunction(() => [...document.querySelectorAll("#panel label")].some((label) => label.textContent.startsWith("scale of the mesh") && label.lastChild.value === "1.1"));
-  assert.deepEqual((await save()).organs[1], { ...sized, scale: 1.1 });
-  for (let i = 0; i < 3; ++i) await button("Undo").click();
-  assert.equal(await text(), before);
-  await settled();
-});
-
-step("a scene is tried at once, as it is on the screen, and nothing is kept", async () => {
-  await page.click(".objects button:has-text('ball')");
-  const files = readdirSync(folder).sort(), organs = (await scene()).organs.length;
-  assert.equal(organs, 2);
-  const started = Date.now();
-  await button("Try it").click();
-  await page.waitForSelector(".view.running .force-bar");
-  const tool = await takeUp(page);
-  console.log(`author: from "Try it" to a scene of ${organs} organs in the hand ${Date.now() - started} ms`);
-  for (let i = 0; i < 40; ++i) await page.mouse.move(tool.x, tool.y + 5 * i);
-  await page.waitForFunction(() => Number.parseFloat(document.querySelector(".force-bar output").textContent) > 0.1);
-  await picture(page, "author-try");
-  await page.keyboard.press("Escape");
-  await page.waitForSelector("button:has-text('Train again')");
-  assert.deepEqual(readdirSync(folder).sort(), files);
-  assert.ok(!existsSync(join(folder, "mine-1.ctpm")));
 });
 
 step("nothing is lost when the program is killed while a scene is edited", async () => {

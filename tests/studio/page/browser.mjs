@@ -163,7 +163,7 @@ export async function openStudio(folder, port = 0, ...more) {
     });
     return (await answer.json()).result;
   };
-  return { page, address, complaints, close, kill, limitFiles, ended: () => (server.exitCode ?? server.signalCode ?? ended(server)), startAgain, call, hand: () => sent, handAtRest, quiet };
+  return { page, address, complaints, close, kill, limitFiles, ended: () => (server.exitCode ?? server.signalCode ?? ended(server)), startAgain, call, hand: () => sent, handsSent: () => count, handAtRest, quiet };
 }
 
 /** Reads until what was read is as it should be; the last that was read. */

@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { after, before } from "node:test";
 import { openDevice } from "./igtl.mjs";
 import { chooseDevice, ctpm, ctpmBeside, leave, makeFolder, moveMouse, openStudio, outOfReach, picture, reading, seriousFindings, step, takeUp, until } from "./browser.mjs";
-import { begin, end, handAxes, untilFelt } from "./trainee_page.mjs";
+import { begin, end, handAxes, takeUpByKeys, untilFelt } from "./trainee_page.mjs";
 import { dot, minus, scaled } from "./vectors.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm";
@@ -52,6 +52,7 @@ step("the expert's ghost is ahead, or at the same place of its path", async () =
   await page.locator("aside .field:has-text('expert') select").selectOption(kExpert);
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".view.running");
+  await takeUpByKeys(page);
   const { poses, interval_s } = await studio.call("session.motion", { path: kExpert, rate_hz: 60 });
   const canvas = page.locator(".view canvas"), box = await canvas.boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + 60);
@@ -125,6 +126,11 @@ step("a gamepad leads the tool: the trigger presses, the shoulder changes it", a
   await page.locator("aside input").first().fill("");
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".transport .hint:has-text('gamepad')");
+  await page.waitForTimeout(100);
+  assert.match(await page.locator(".clock").innerText(), /^begins when/, "a gamepad that rests takes nothing up");
+  await page.evaluate(() => (globalThis.pad.axes[0] = 1));
+  await page.waitForFunction(() => /^\d/.test(document.querySelector(".clock").textContent));
+  await page.evaluate(() => (globalThis.pad.axes[0] = 0));
   // Sticks: sideways, deep and turns about two axes; a stick that rests a little off its middle does nothing.
   const { right, up, deep } = handAxes(), start = await studio.handAtRest();
   const hold = async (axis, value, time = 200) => {
@@ -233,6 +239,7 @@ step("on a tablet one finger moves the tool, two look around, and buttons do wha
   await tap(".list button:has-text('kidney')");
   await page.waitForSelector(".view.running .force-bar");
   const { right, up, deep } = handAxes(), box = await page.locator(".view canvas").boundingBox();
+  await tap("button:text-is('turn left')"); // a session begins with the first that leads the tool
   const start = await studio.handAtRest(), began = { x: box.x + box.width / 2, y: box.y + 60 };
   const slide = async (by, ...fingers) => {
     await touch("touchStart", ...fingers);

@@ -98,8 +98,21 @@ step("a tool stands where it was dragged to, and is taken up there", async () =>
   await page.keyboard.press("Control+z");
   assert.deepEqual((await scene()).tools.find((tool) => tool.name === "scalpel"), before);
   await settled();
+  // It is tried as its author sees it: the tool is where its handle was in the picture.
+  await page.locator(".view canvas").focus();
+  for (const key of ["d", "d", "d", "d", "w", "-"]) await page.keyboard.press(key);
+  await page.waitForTimeout(200);
+  const fromMiddle = async (locator) => {
+    const at = await centreOf(locator), middle = await centreOf(page.locator(".view canvas"));
+    return [at.x - middle.x, at.y - middle.y];
+  };
+  const first = await fromMiddle(handle("ball"));
   await button("Try it").click();
   await page.waitForSelector(".view.running .force-bar");
+  await page.mouse.move(2, 700);
+  await page.waitForSelector(".take-up");
+  const tried = await fromMiddle(page.locator(".take-up"));
+  assert.ok(Math.hypot(tried[0] - first[0], tried[1] - first[1]) < 3, `${first} and ${tried}`);
   assert.equal(await page.locator(".recorded").textContent(), "not recorded");
   await page.keyboard.press("Escape");
   await page.waitForSelector("button:has-text('Train again')");
@@ -142,6 +155,19 @@ step("anchors are painted by the brush; a stroke is one step", async () => {
   await settled();
   await picture(page, "author-brush");
   await page.keyboard.press("Escape");
+  // One row of the list, which opens: each of its balls can be chosen, and all of them removed.
+  const row = page.locator(".objects .stroke"), balls = painted.length - anchors;
+  assert.match(await row.locator("summary").innerText(), new RegExp(`^${balls} balls of [\\d.]+ mm$`));
+  assert.equal(await row.locator("li button:visible").count(), 0);
+  await row.locator("summary").click();
+  assert.equal(await row.locator("li button:visible").count(), balls);
+  await row.locator("li button").nth(1).click();
+  await page.waitForSelector("#panel h2:has-text('anchor: ball')");
+  await picture(page, "author-stroke");
+  await row.locator("button:has-text('remove them all')").click();
+  assert.equal((await scene()).organs[0].anchors?.length ?? 0, anchors);
+  await page.keyboard.press("Control+z");
+  assert.deepEqual((await scene()).organs[0].anchors, painted);
   await page.keyboard.press("Control+z");
   assert.equal(await text(), before);
   await page.keyboard.press("Control+Shift+z");

@@ -4,7 +4,7 @@ import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "no
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { ctpm, ctpmBeside, leave, makeFolder, moveMouse, openStudio, outOfReach, overflow, paths, picture, reading, seriousFindings, step, takeUp, until } from "./browser.mjs";
-import { begin, end, handAxes, untilFelt } from "./trainee_page.mjs";
+import { begin, end, handAxes, takeUpByKeys, untilFelt } from "./trainee_page.mjs";
 import { dot, minus } from "./vectors.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm";
@@ -63,6 +63,7 @@ step("names in a scene are text", async () => {
   // In the other rooms too: lists, handles and fields of a scene, captions and panels of its session.
   await page.click("button:has-text('Train again')");
   await begin(page, "html", "html.ctpm");
+  await takeUpByKeys(page);
   await page.waitForTimeout(300);
   await page.keyboard.press("Escape");
   await page.click("button:has-text('Open in Review')");
@@ -134,6 +135,30 @@ step("the wheel moves the tool away from the viewer, and the pointer slows as th
   await page.click("button:has-text('Train again')");
 });
 
+step("a session begins when the tool is taken up: what comes before is in no time of it", async () => {
+  await begin(page, "kidney", "late.ctpm");
+  await page.waitForSelector(".take-up");
+  const sent = studio.handsSent(), canvas = page.locator(".view > canvas"), box = await canvas.boundingBox();
+  await moveMouse(page, { x: box.x + 10, y: box.y + 0.7 * box.height }, { x: box.width - 100, y: 0 }, 30);
+  await page.waitForTimeout(1500);
+  assert.equal(studio.handsSent(), sent);
+  assert.match(await page.locator(".clock").innerText(), /^begins when you take up the tool$/);
+  await picture(page, "train-not-begun");
+  // The tool that waits is seen: another one looks otherwise.
+  const ball = await canvas.screenshot();
+  await page.keyboard.press("2");
+  assert.ok((await until(async () => !ball.equals(await canvas.screenshot()), Boolean)), "the scalpel is drawn in place of the ball");
+  assert.equal(studio.handsSent(), sent);
+  await page.keyboard.press("1");
+  const began = Date.now();
+  await takeUp(page);
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 0.2);
+  await end(page);
+  const lasted = JSON.parse(ctpm(folder, "info", "late.ctpm", "--json").out).duration_s;
+  assert.ok(lasted > 0.2 && lasted < (Date.now() - began) / 1e3, `${lasted} s`);
+  await page.click("button:has-text('Train again')");
+});
+
 step("the pointer takes the tool up where it is, and carries nothing along from where it came in", async () => {
   const { right, up } = handAxes();
   await page.locator("aside input").first().fill("");
@@ -141,6 +166,7 @@ step("the pointer takes the tool up where it is, and carries nothing along from 
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".view.running");
   await page.waitForSelector(".take-up");
+  await takeUpByKeys(page);
   const box = await page.locator(".view > canvas").boundingBox(), start = await studio.handAtRest();
   const stays = async (how) => assert.ok(Math.hypot(...minus(await studio.handAtRest(), start)) < 1e-9, how);
   // Over the whole organ, and out of the picture and in again.

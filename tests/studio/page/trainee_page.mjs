@@ -17,6 +17,12 @@ export async function begin(page, scene, session = "") {
   await page.waitForSelector(".view.running");
 }
 
+/** Takes the tool up by keys, which leave it where it was: from then on the session runs. */
+export async function takeUpByKeys(page) {
+  await page.keyboard.press("ArrowUp");
+  await page.keyboard.press("ArrowDown");
+}
+
 /** Ends it by key. */
 export async function end(page) {
   await page.keyboard.press("Escape");
