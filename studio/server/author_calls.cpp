@@ -53,6 +53,8 @@ Result<std::string> write_scene(Parameters& parameters, const CallContext& conte
     if (!before) return before.errors();
     present = revision_of(*before);
   }
+  if (present != revision && revision == kNoFile)
+    return Error{path, "exists already; nothing was written", "choose another name"};
   if (present != revision)
     return Error{path, "was changed on the disk since it was read; nothing was written", "read it again"};
   if (const Result<Done> written = output::write_text_file(*file, text); !written) return written.errors();

@@ -337,7 +337,7 @@ function CopyForm({ doc, onClose, onCopied }: { doc: SceneDocument; onClose: () 
       e.preventDefault();
       doc.saveCopy(path).then(() => (onClose(), onCopied(path)), setError);
     }}>
-      <label class="copy-name">{folder}<input value={name} aria-label="Name of the copy, without .json" onInput={(e) => setName(e.currentTarget.value)} />.json</label>
+      <label class="copy-name">{folder}<input value={name} aria-label="Name of the copy, without .json" onInput={(e) => (setName(e.currentTarget.value), setError(null))} />.json</label>
       <Problems error={error} />
       <div class="buttons">
         <button type="submit" class="main" disabled={!isName}>Save the copy</button>

@@ -6,6 +6,10 @@ function linear(c: number): number {
   return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
 }
 
+// A cut bleeds, as in videos: a film on its walls, and its edges, so that a closed one stays visible. In linear light.
+const kBlood = [0.34, 0, 0.006], kFilm = 0.34;
+const kLip = [0.58, 0.1, 0.09], kNoLip = [1, 1, 1];
+
 /** Of the outside of an organ, and of the walls of its cuts. They outlive its triangles: the browser would compile them
     again for each cut, which takes longer than everything else in a picture. */
 export function organMaterials(look: OrganView): three.MeshPhongMaterial[] {
@@ -178,15 +182,15 @@ export class OrganMesh {
   private colour(): void {
     this.isColoured = true;
     const colours = this.mesh.geometry.attributes.color as three.BufferAttribute;
-    const outer = this.look.outer.map(linear), inner = this.look.inner.map(linear);
+    const outer = this.look.outer.map(linear), inner = this.look.inner.map((c, i) => linear(c) + kFilm * (kBlood[i] - linear(c)));
     const hollow = this.hollows();
     for (let v = 0; v < this.triangles.vertexCount; ++v) {
       const isWall = v >= this.triangles.outerVertexCount;
       const stain = 1 + 0.16 * (this.triangles.stain[v] / 127.5 - 1);
       const shade = isWall ? 1 : stain * Math.min(1.15, Math.max(0.55, 1 + 1.6 * hollow[v]));
-      const lip = this.triangles.lip[v] > 0 ? 0.75 : 1;
+      const lip = this.triangles.lip[v] > 0 ? kLip : kNoLip;
       const base = isWall ? inner : outer;
-      colours.setXYZ(v, base[0] * shade * lip, base[1] * shade * lip, base[2] * shade * lip);
+      colours.setXYZ(v, base[0] * shade * lip[0], base[1] * shade * lip[1], base[2] * shade * lip[2]);
     }
     colours.needsUpdate = true;
   }

@@ -32,7 +32,7 @@ export class StageScene {
 
   constructor(readonly view: SceneView) {
     this.materials = view.organs.map(organMaterials);
-    this.scene.add(new three.HemisphereLight(0xdfe8ff, 0x3a2e2a, 1.5), ...this.arrows);
+    this.scene.add(new three.HemisphereLight(0xdfe8ff, 0x5a4a46, 2.2), ...this.arrows);
     for (const arrow of this.arrows) arrow.visible = false;
   }
 

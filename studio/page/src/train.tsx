@@ -289,7 +289,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
                 {kHeld.map(([text, key]) => <HeldButton key={key} text={text} onHeld={() => trainer.press(key, false)} />)}
               </div>
             )}
-            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}{isTouch ? "one finger: move · two: look around" : "mouse, arrows: move · click: take up the tool and hold the mouse · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · Esc: end"}</span>}
+            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · C: next camera · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}{isTouch ? "one finger: move · two: look around" : "mouse, arrows: move · click: take up the tool and hold the mouse · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · C: next camera · Esc: end"}</span>}
           </div>
         )}
       </div>

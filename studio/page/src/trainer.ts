@@ -50,6 +50,7 @@ export class Trainer {
   onEnded: (ended: EndedTraining) => void = () => {};
   onFailing: (problem: string) => void = () => {}; // what is recorded cannot be saved now
   private held = false;
+  private camera = 0; // of the scene, through which the hand looked last
   private view: SceneView | null = null;
   private readonly hands = [makeHand(), makeHand()];
   private readonly box = new three.Box3();
@@ -131,6 +132,7 @@ export class Trainer {
     this.viewer.set(kTrainStage, this.scene);
     const camera = seen ?? firstCamera(begun.view);
     if (camera) this.viewer.look(camera);
+    this.camera = Math.max(0, begun.view.cameras.findIndex((own) => own === camera));
     for (const message of this.pending.splice(0)) this.take(message);
     if (!this.awaited) this.takeUp();
     return begun;
@@ -208,9 +210,16 @@ export class Trainer {
     else if (turn) this.hasBegun = true, this.own.turn.multiply(new three.Quaternion().setFromAxisAngle(new three.Vector3(...turn), kTurnStep * (isFine ? 0.25 : 1)));
     else if (key.toLowerCase() === "x" && this.handCount > 1) this.lead(1 - this.led);
     else if (/^[1-9]$/.test(key)) this.setTool(Number(key) - 1);
+    else if (key.toLowerCase() === "c") this.nextCamera();
     else return false;
     this.send();
     return true;
+  }
+
+  /** Looks through the scene's next camera. */
+  nextCamera(): void {
+    const cameras = this.view?.cameras ?? [];
+    if (cameras.length > 0) this.viewer.look(cameras[(this.camera = (this.camera + 1) % cameras.length)]);
   }
 
   /** Moves the hand as a gamepad asks, for the time since the last pose. */

@@ -44,7 +44,7 @@ export class Viewer {
   frames = 0; // drawn so far
   private readonly renderer: three.WebGLRenderer;
   private readonly picture: Picture;
-  private readonly key = new three.DirectionalLight(0xfff4e6, 2.2);
+  private readonly key = new three.DirectionalLight(0xfff4e6, 3);
   private readonly rim = new three.DirectionalLight(0x9fc2ff, 0.7);
   private readonly observer: ResizeObserver;
   onDraw: () => void = () => {}; // before each drawing

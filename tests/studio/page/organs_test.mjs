@@ -4,7 +4,7 @@ import { cpSync, existsSync, readdirSync, readFileSync, rmSync, writeFileSync } 
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
-import { ctpm, leave, makeFolder, openStudio, paths, picture, step, takeUp } from "./browser.mjs";
+import { ctpm, leave, makeFolder, openStudio, paths, picture, step, takeUp, until } from "./browser.mjs";
 
 let folder, studio, page;
 const kScene = "my-kidney-scene.json";
@@ -203,7 +203,7 @@ step("organs are told to touch each other, removed, and the scene is saved under
   await button("Save a copy…").click();
   await page.locator(".copy-name input").fill(kScene.replace(".json", ""));
   await button("Save the copy").click();
-  await page.waitForSelector(".conflict .problems"); // it is there already
+  await page.waitForSelector(".conflict .problems:has-text('exists already')");
   await page.locator(".copy-name input").fill("one kidney");
   await picture(page, "author-copy");
   await button("Save the copy").click();
@@ -228,8 +228,9 @@ step("a scene is tried at once, as it is on the screen, and nothing is kept", as
   await page.waitForSelector(".view.running .force-bar");
   const tool = await takeUp(page);
   console.log(`author: from "Try it" to a scene of ${organs} organs in the hand ${Date.now() - started} ms`);
-  for (let i = 0; i < 40; ++i) await page.mouse.move(tool.x, tool.y + 5 * i);
-  await page.waitForFunction(() => Number.parseFloat(document.querySelector(".force-bar output").textContent) > 0.1);
+  const force = async () => Number.parseFloat(await page.locator(".force-bar output").innerText());
+  for (let i = 0; i < 60 && (await force()) < 1; ++i) await page.mouse.move(tool.x, tool.y + 4 * i);
+  assert.ok((await until(force, (newtons) => newtons > 0.1)) > 0.1);
   await picture(page, "author-try");
   await page.keyboard.press("Escape");
   await page.waitForSelector("button:has-text('Train again')");

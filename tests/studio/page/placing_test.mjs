@@ -103,8 +103,8 @@ step("a tool stands where it was dragged to, and is taken up there", async () =>
   for (const key of ["d", "d", "d", "d", "w", "-"]) await page.keyboard.press(key);
   await page.waitForTimeout(200);
   const fromMiddle = async (locator) => {
-    const at = await centreOf(locator), middle = await centreOf(page.locator(".view canvas"));
-    return [at.x - middle.x, at.y - middle.y];
+    const at = await centreOf(locator), box = await page.locator(".view canvas").boundingBox();
+    return [at.x - box.x - box.width / 2, at.y - box.y - box.height / 2].map((x) => x / box.width);
   };
   const first = await fromMiddle(handle("ball"));
   await button("Try it").click();
@@ -112,7 +112,7 @@ step("a tool stands where it was dragged to, and is taken up there", async () =>
   await page.mouse.move(2, 700);
   await page.waitForSelector(".take-up");
   const tried = await fromMiddle(page.locator(".take-up"));
-  assert.ok(Math.hypot(tried[0] - first[0], tried[1] - first[1]) < 3, `${first} and ${tried}`);
+  assert.ok(Math.hypot(tried[0] - first[0], tried[1] - first[1]) < 0.005, `${first} and ${tried}, in widths of the picture`);
   assert.equal(await page.locator(".recorded").textContent(), "not recorded");
   await page.keyboard.press("Escape");
   await page.waitForSelector("button:has-text('Train again')");

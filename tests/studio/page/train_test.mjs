@@ -150,6 +150,15 @@ step("a session begins when the tool is taken up: what comes before is in no tim
   assert.ok((await until(async () => !ball.equals(await canvas.screenshot()), Boolean)), "the scalpel is drawn in place of the ball");
   assert.equal(studio.handsSent(), sent);
   await page.keyboard.press("1");
+  // Its cameras are looked through one after the other, and the tool waits where it is.
+  const ring = async () => (({ x, y }) => [x, y])(await page.locator(".take-up").boundingBox()), seen = [await ring()];
+  const apart = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
+  do {
+    await page.keyboard.press("c");
+    seen.push(await until(ring, (at) => apart(at, seen.at(-1)) > 1));
+  } while (seen.length < 9 && apart(seen.at(-1), seen[0]) > 1);
+  assert.ok(seen.length > 3 && seen.length < 9, `round all of them: ${seen.join(" ")}`);
+  assert.equal(studio.handsSent(), sent);
   const began = Date.now();
   await takeUp(page);
   await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 0.2);
