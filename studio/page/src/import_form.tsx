@@ -2,6 +2,7 @@ import type { JSONPath } from "jsonc-parser";
 import { useEffect, useRef, useState } from "preact/hooks";
 import * as three from "three";
 import type { AuthorScene, Finding } from "./author_scene";
+import { takenAlong } from "./belongings";
 import type { Connection } from "./connection";
 import { freeName, listOf, mmVector } from "./items";
 import { type Json, parseJson } from "./json_edit";
@@ -91,7 +92,9 @@ async function addOrgans(connection: Connection, open: AuthorScene, imported: Im
   const values: [JSONPath, Json][] = [], known = [...organs];
   for (const { name, mesh, at_mm: _, ...rest } of added) {
     const organ = { name: freeName(known, String(name)), mesh, at_mm: mmVector(at), ...rest };
+    const alone = { ...organ, at_mm: [0, 0, 0] };
     values.push([["organs", known.length], organ]);
+    for (const [[, , ...key], field] of takenAlong([[["organs", 0, "at_mm"], mmVector(at)]], { organs: [alone] }, [], [])) values.push([["organs", known.length, ...key], field!]);
     known.push(organ);
   }
   const cameras = listOf(doc.value, "cameras");

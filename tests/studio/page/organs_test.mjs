@@ -44,6 +44,9 @@ step("a second mesh becomes an organ of the scene, which is moved by its handle"
   assert.deepEqual(added.map(({ name }) => name), ["kidney", "kidney-2"]);
   for (const [i, at] of added[1].at_mm.entries()) assert.ok(Math.abs(at - organs[1].at_mm[i]) < 1, `${added[1].at_mm} and ${organs[1].at_mm}`);
   assert.deepEqual({ ...added[1].material, fitted_for: 0 }, { ...organs[1].material, fitted_for: 0 });
+  // Where its stiffness was fitted lies in it by now.
+  const least = (axis) => Math.min(...mesh.toString().split("\n").filter((line) => line.startsWith("v ")).map((line) => Number(line.split(/\s+/)[1 + axis]))) + organs[1].at_mm[axis];
+  assert.ok(organs[1].material.fitted_for.place_mm[0] > least(0), `${organs[1].material.fitted_for.place_mm} beyond ${least(0)}`);
   rmSync(other, { recursive: true });
   assert.deepEqual(organs.map(({ name }) => name), ["kidney", "kidney-2"]); // what they are, not what their files are called
   // The camera that the import left sees both, as a picture of the command does, and so does Author.
