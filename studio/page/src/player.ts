@@ -200,8 +200,8 @@ export class Player {
 
   /** Sees the sessions as the program says; what the page cannot draw, the program draws in pictures of that size. One
       picture is asked for at a time, so that a hand that turns the view is followed as fast as they come. What comes of a
-      session that is no longer shown, a failure too, is of no interest. */
-  async see(look: Look, size: string, onSeen: (seen: Seen) => void): Promise<void> {
+      session that is no longer shown, a failure too, is of no interest. `onSeen` may hear of a look that was asked for later. */
+  async see(look: Look, size: string, onSeen: (seen: Seen, as: Look) => void): Promise<void> {
     this.look = look;
     this.wanted = { look, size };
     if (this.isLooking) return;
@@ -215,7 +215,7 @@ export class Player {
           if (isShown()) throw failure;
           return null;
         });
-        if (seen && isShown()) onSeen(seen);
+        if (seen && isShown()) onSeen(seen, newest);
       }
     } finally {
       this.isLooking = false;

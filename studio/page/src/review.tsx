@@ -124,10 +124,10 @@ export function Review({ connection, listing, place, onPlace }: {
   const size = canvas.current && player ? sizeOf(canvas.current, player.tracks.size) : "";
   useEffect(() => {
     if (!player || !first) return;
-    player.see(look, size, (seen) => {
+    player.see(look, size, (seen, as) => {
       setError(null);
       setLegend(seen.title ? seen : null);
-      if (look.camera !== turned.current) player.viewer.look(seen.camera); // else a hand may have turned it farther
+      if (as.camera !== turned.current) player.viewer.look(seen.camera); // else a hand may have turned it farther
       setVersion((v) => v + 1); // what an export sees
     }).catch(setError);
   }, [player, first, second, look, size]);

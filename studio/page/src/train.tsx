@@ -421,7 +421,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
       {ended.path && (
         <Section title="Verify and compare">
           <ExpertChoice listing={others} expert={expert} onExpert={onExpert} use="to compare with" />
-          {otherScene && <p class="warning" role="alert">{otherScene}. It cannot be compared with.</p>}
+          {otherScene && <p class="warning" role="alert">{otherScene}. They cannot be compared.</p>}
           {progress ? <Working what={verdict ? "comparing" : "verifying"} done={progress[0]} total={progress[1]} onCancel={() => running.current?.abort()} />
             : <button type="button" class="main" onClick={() => void compare()}>{isCompared ? "Verify and compare" : "Verify"}</button>}
           {verdict && <p class={verdict.same ? "good" : "warning"} role="status">{verdict.text}</p>}

@@ -204,6 +204,10 @@ step("views, cutaway and cameras are those of export", async () => {
     slider.value = "2.6";
     slider.dispatchEvent(new Event("input", { bubbles: true }));
   });
+  await page.click("#tab-export");
+  await choose("camera", ""); // keys have turned it
+  await studio.quiet(1000);
+  const [, firstCamera] = /--camera (\S+)/.exec(await page.locator("#panel .command code").innerText());
   await choose("view", "spheres");
   await drawing();
   const seen = new Set([await pixels()]);
@@ -276,9 +280,11 @@ step("views, cutaway and cameras are those of export", async () => {
     return canvas.width !== before && Math.abs(canvas.width - place.clientWidth) <= 1 && Math.abs(canvas.height - place.clientHeight) <= 1;
   }, size[0]);
   await page.setViewportSize({ width: 1280, height: 720 });
+  // Back to how it was seen at first, chosen faster than it is drawn: the program's camera, and the page's own picture.
   await choose("view", "surface");
   await choose("camera", "");
   await choose("cutaway", "");
+  await page.waitForFunction((first) => document.querySelector("#panel .command code").textContent.includes(`--camera ${first}`), firstCamera);
   await page.waitForSelector(".drawings canvas[hidden]", { state: "attached" });
   await page.click("#tab-moment");
 });

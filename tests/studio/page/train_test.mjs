@@ -268,8 +268,10 @@ step("the same motion as a table, recorded by the command, does the same to the 
   assert.ok(Math.abs(same.severed - info.severed) <= 0.02 * info.severed, `${same.severed} and ${info.severed} elements are severed`);
   for (const key of ["max_force_n", "max_depth_m"]) assert.ok(Math.abs(same[key] / info[key] - 1) < 0.02, `${key}: ${same[key]} and ${info[key]}`);
   // Its force in each tick, not only the largest one.
-  const mine = readFileSync(join(folder, "mine.csv"), "utf8").trim().split("\n").slice(1).map((row) => Number(row.split(",")[14]));
-  const { force_n: table } = await studio.call("session.timeline", { path: "again.ctpm", points: 20000 });
+  const ticks = readFileSync(join(folder, "mine.csv"), "utf8").trim().split("\n").slice(1).map((row) => Number(row.split(",")[14]));
+  const kPoints = 20000, each = Math.ceil(ticks.length / kPoints); // a slow machine makes longer sessions, of which parts have one value
+  const mine = Array.from({ length: Math.ceil(ticks.length / each) }, (_, i) => Math.max(...ticks.slice(each * i, each * (i + 1))));
+  const { force_n: table } = await studio.call("session.timeline", { path: "again.ctpm", points: kPoints });
   assert.equal(mine.length, table.length);
   const apart = Math.sqrt(mine.reduce((sum, force, i) => sum + (force - table[i]) ** 2, 0) / mine.length) / Math.max(...mine);
   console.log(`training: the forces of ${mine.length} ticks are apart by ${(100 * apart).toFixed(3)} % of the largest (root of the mean square)`);
@@ -305,7 +307,7 @@ step("an expert's session of another scene is said to be one, in a training and 
   await page.waitForSelector("aside button.main:text-is('Verify and compare')");
   await choice.selectOption(kOther);
   await warning.waitFor();
-  assert.match(await warning.innerText(), /liver instead of kidney/);
+  assert.match(await warning.innerText(), /kidney instead of liver.*They cannot be compared/);
   assert.ok(await page.locator("aside button.main:text-is('Verify')").count(), "what it offers is to verify alone");
   await picture(page, "train-other-scene-ended");
 });
