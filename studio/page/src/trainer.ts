@@ -146,7 +146,7 @@ export class Trainer {
     this.motion = motion;
     this.reached = 0;
     this.ghostAway = null;
-    if (!motion) this.scene?.setGhost(null);
+    if (!motion) this.scene?.setGhost(null), this.viewer.draw();
   }
 
   setTool(tool: number): void {
