@@ -1,5 +1,5 @@
 import type { Binary, Connection } from "./connection";
-import type { ComparisonResult, Drawing, Frame, OpenedSession, Comparable, Seen, SessionInfo, TimelineData, Shapes } from "./protocol";
+import type { CameraView, Comparable, ComparisonResult, Drawing, Frame, OpenedSession, Seen, SessionInfo, TimelineData, Shapes } from "./protocol";
 import { freeCamera, isPlain, kPlainLook, type Look, lookParameters, steppedForward } from "./look";
 import { type Alignment, kEventOf, type Place } from "./place";
 import { StageScene } from "./stage_scene";
@@ -23,6 +23,11 @@ const kTimelinePoints = 12000; // so that a part of a long session can be looked
 export function firstOf(info: SessionInfo, kind: string): number | null {
   const event = info.events.find((e) => e.kind === kind);
   return event ? event.tick * info.tick_s : null;
+}
+
+/** How far a camera is from what it looks at [m]. */
+function farOf({ eye, target }: CameraView): number {
+  return Math.hypot(...eye.map((x, axis) => x - target[axis]));
 }
 
 /** The clock of a review: moves to a moment, plays, and asks the program for one picture at a time. */
@@ -231,7 +236,9 @@ export class Player {
       // As in a video, all of one scene is seen as the first one is.
       const isAlike = JSON.stringify([first.session.view.least, first.session.view.most]) === JSON.stringify([second.session.view.least, second.session.view.most]);
       const camera = isAlike && look.camera !== "follow" ? freeCamera(seen.camera, second.session.view.up) : look.camera;
-      await ask(1, { ...look, camera });
+      const other = await ask(1, { ...look, camera });
+      // The page sees both with one camera: of two scenes, the one that is farther away has both in its picture.
+      if (!isAlike && !size && farOf(other.camera) > farOf(seen.camera)) seen.camera = other.camera;
     }
     if (size || this.drawings.size > 0) {
       this.drawings.clear();

@@ -45,7 +45,23 @@ step("of sessions of two scenes it is said at once that they cannot be compared"
   assert.equal(await difference.count(), 0);
   assert.ok((await compare.isDisabled()) && (await path.isDisabled()));
   assert.deepEqual(await seriousFindings(page), []);
+  await studio.quiet(1000);
   await picture(page, "review-other-scene");
+  // Both organs are in the picture, although one is larger: none of its edges has tissue.
+  const [inAll, atEdges] = await page.evaluate(async (encoded) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(encoded), (c) => c.charCodeAt(0))])), { width, height } = bitmap;
+    const context = new OffscreenCanvas(width, height).getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, width, height);
+    let all = 0, edges = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      if (data[i] < 60 || data[i] < 1.8 * data[i + 1] || data[i] < 1.8 * data[i + 2]) continue;
+      const x = (i / 4) % width, y = Math.floor(i / 4 / width), middle = Math.abs(x - width / 2);
+      ++all, edges += x < 5 || x > width - 6 || y > height - 6 || middle < 3;
+    }
+    return [all, edges];
+  }, (await page.locator(".view > canvas").screenshot()).toString("base64"));
+  assert.ok(inAll > 3000 && atEdges === 0, `${atEdges} of ${inAll} pixels of tissue are at an edge`);
   await page.locator("#panel select").selectOption(kClumsy);
   await difference.waitFor();
   assert.equal(await notice.count(), 0);
