@@ -79,10 +79,13 @@ void add_look(CLI::App& app, views::LookRequest& request) {
                  "What colours show: layer of spheres, in previews also material; stretch, tilt or force of elements");
   app.add_option("--full-scale", request.full_scale, "Value of the last colour of elements [%, deg or N]");
   app.add_option("--cutaway", request.cutaway, "Leave out what is before a plane across x, y or z: y, or y=12.5 in mm");
-  app.add_option("--camera", request.camera,
-                 "A camera of the scene, fitted, wound or press where it is seen best, follow the tool, or a place and "
-                 "what it looks at in mm, as 0,-300,200:0,0,20; if not given one that sees the section, the wound or "
-                 "the deepest press, else the scene's first");
+  app.add_option(
+      "--camera", request.camera,
+      "A camera of the scene, fitted, wound or press where it is seen best, follow the tool, or a place and "
+      "what it looks at in mm, as 0,-300,200:0,0,20, with an upward direction and a field of view in degrees "
+      "if they are not the usual ones, as 0,-300,200:0,0,20:0,0,1:35; if not given one that sees the section, the "
+      "wound or "
+      "the deepest press, else the scene's first");
 }
 
 void add_time_range(CLI::App& app, session::TimeRange& range) {

@@ -58,6 +58,9 @@ Result<ComparedFiles> compare_files(OpenedFiles files, const CompareFilesOptions
   for (const auto* track : {&expert, &trainee})
     if (!*track) errors.insert(errors.end(), track->errors().begin(), track->errors().end());
   if (!errors.empty()) return errors;
+  // What a replay reports is what was recorded, to the bit, where somebody has replayed all of it.
+  if (how.is_expert_known) expert->is_verified = expert->replays;
+  if (how.is_trainee_known) trainee->is_verified = trainee->replays;
   CompareOptions options;
   options.force_limit = how.force_limit;
   const recordings::SessionStart& scene = files.expert.start();

@@ -31,6 +31,8 @@ Result<OpenedFiles> open_files(const std::string& expert, const std::string& tra
 struct CompareFilesOptions {
   std::optional<double> force_limit;  ///< [N], see CompareOptions
   Replaying replaying = Replaying::short_ones;
+  /// That the session was replayed before, and all of its ticks were as recorded: it counts as verified.
+  bool is_expert_known = false, is_trainee_known = false;
   std::function<void(std::int64_t done, std::int64_t total)> progress = {};  ///< in ticks of both; one call at a time
   std::function<bool()> should_stop = {};                                    ///< asked by two threads
 };

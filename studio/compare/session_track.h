@@ -57,7 +57,7 @@ struct SessionTrack {
   double slip = 0;                       ///< largest TickRecord::slip [s]: real time that the session lacks
   bool is_timed =
       true;  ///< its times are those of the hand: no hand moved it, or it lacks at most 1 % of the real time
-  bool is_verified = false;  ///< every tick replayed as recorded: force, depth and severed are those of the replay
+  bool is_verified = false;  ///< every tick replays as recorded: force, depth and severed are those of the replay
   bool replays = true;       ///< replaying the cuts gave the recorded hashes; false: severed_at is that of the replay
 
   std::size_t tick_count() const { return tool.size(); }

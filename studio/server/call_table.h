@@ -22,6 +22,7 @@ Result<std::string> close_session(Parameters& parameters, const CallContext& con
 Result<std::string> draw_session(Parameters& parameters, const CallContext& context);
 Result<std::string> session_timeline(Parameters& parameters, const CallContext& context);
 Result<std::string> verify_session(Parameters& parameters, const CallContext& context);
+Result<std::string> are_comparable(Parameters& parameters, const CallContext& context);
 Result<std::string> compare_sessions(Parameters& parameters, const CallContext& context);
 Result<std::string> export_session(Parameters& parameters, const CallContext& context);
 Result<std::string> session_motion(Parameters& parameters, const CallContext& context);

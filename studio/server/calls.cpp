@@ -15,14 +15,30 @@ namespace {
 using Call = Result<std::string> (*)(Parameters&, const CallContext&);
 
 constexpr std::pair<const char*, Call> kCalls[] = {
-    {"folder.list", list_folder},          {"session.open", open_session},         {"session.close", close_session},
-    {"session.draw", draw_session},        {"session.timeline", session_timeline}, {"session.verify", verify_session},
-    {"session.compare", compare_sessions}, {"session.export", export_session},     {"notes.read", read_notes},
-    {"notes.write", write_notes},          {"session.motion", session_motion},     {"scene.read", read_scene},
-    {"scene.write", write_scene},          {"scene.check", check_scene},           {"scene.show", show_scene},
-    {"scene.import", import_mesh},         {"scene.presets", list_presets},        {"scene.schema", show_schema},
-    {"scene.measure", measure_scene},      {"scene.scatter", measure_scatter},     {"train.begin", begin_training},
-    {"train.end", end_training},           {"scene.formats", list_formats},
+    {"folder.list", list_folder},
+    {"session.open", open_session},
+    {"session.close", close_session},
+    {"session.draw", draw_session},
+    {"session.timeline", session_timeline},
+    {"session.verify", verify_session},
+    {"session.compare", compare_sessions},
+    {"session.export", export_session},
+    {"notes.read", read_notes},
+    {"notes.write", write_notes},
+    {"session.motion", session_motion},
+    {"scene.read", read_scene},
+    {"scene.write", write_scene},
+    {"scene.check", check_scene},
+    {"scene.show", show_scene},
+    {"scene.import", import_mesh},
+    {"scene.presets", list_presets},
+    {"scene.schema", show_schema},
+    {"scene.measure", measure_scene},
+    {"scene.scatter", measure_scatter},
+    {"train.begin", begin_training},
+    {"train.end", end_training},
+    {"scene.formats", list_formats},
+    {"session.comparable", are_comparable},
 };
 
 void write_entries(output::JsonWriter& json, const char* key, const std::vector<FolderEntry>& entries) {

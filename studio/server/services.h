@@ -10,8 +10,8 @@
 
 #include "studio/server/access.h"
 #include "studio/server/folder.h"
+#include "studio/server/known_files.h"
 #include "studio/server/limits.h"
-#include "studio/server/own_files.h"
 #include "studio/server/urgency.h"
 
 namespace ctpm::server {
@@ -24,7 +24,8 @@ struct Services {
   Folder folder;
   Access access;
   Limits limits;
-  OwnFiles uploads, films;                               ///< taken from pages; exported for them
+  KnownFiles uploads, films;                             ///< taken from pages; exported for them
+  KnownFiles verified;                                   ///< sessions that replayed as they were recorded
   std::size_t connections = 0;                           ///< open now; of the network's thread
   std::map<const void*, std::function<void()>> clients;  ///< closes each page; of the network's thread
   std::atomic<bool> ends{false};                         ///< the server is about to stop: calls must end

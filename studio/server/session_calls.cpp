@@ -95,12 +95,17 @@ Result<std::string> session_timeline(Parameters& parameters, const CallContext& 
 Result<std::string> verify_session(Parameters& parameters, const CallContext& context) {
   const std::string path = parameters.text("path");
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
-  Result<recordings::SessionReader> reader = open_reader(context, path);
+  const Result<std::string> file = context.folder.find(path);
+  if (!file) return file.errors();
+  const std::optional<KnownFiles::Stamp> before = KnownFiles::stamp_of(*file);
+  Result<recordings::SessionReader> reader = recordings::SessionReader::open(*file);
   if (!reader) return reader.errors();
   recordings::VerifyOptions options;
   options.progress = context.progress, options.should_stop = context.should_stop;
   const Result<session::WholeVerdict> verdict = session::verify_whole(*reader, options);
   if (!verdict) return verdict.errors();
+  // With the stamp from before: what was written to meanwhile may not be what was read.
+  if (context.verified && before && verdict->same()) context.verified->add(*file, *before);
   output::JsonWriter json;
   json.begin_object()
       .member("same", verdict->same())
@@ -108,6 +113,19 @@ Result<std::string> verify_session(Parameters& parameters, const CallContext& co
       .member("ticks", verdict->ticks.ticks_compared)
       .member("first_different_s",
               verdict->ticks.first_tick < 0 ? NAN : double(verdict->ticks.first_tick) * reader->start().model.tick);
+  return json.end_object().text();
+}
+
+Result<std::string> are_comparable(Parameters& parameters, const CallContext& context) {
+  const std::string expert = parameters.text("expert"), trainee = parameters.text("trainee");
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  const Result<recordings::SessionReader> first = open_reader(context, expert), second = open_reader(context, trainee);
+  for (const auto* session : {&first, &second})
+    if (!*session) return session->errors();
+  const Result<Done> same = compare::check_same_scene(*first, *second);
+  const std::string text = same ? "" : same.errors()[0].where + " " + same.errors()[0].message;
+  output::JsonWriter json;
+  json.begin_object().member("comparable", bool(same)).member("text", std::string_view(context.folder.shown(text)));
   return json.end_object().text();
 }
 
@@ -122,6 +140,10 @@ Result<std::string> compare_sessions(Parameters& parameters, const CallContext& 
   if (!opened) return opened.errors();
   compare::CompareFilesOptions options;
   options.force_limit = force_limit, options.progress = context.progress, options.should_stop = context.should_stop;
+  if (context.verified) {
+    options.is_expert_known = context.verified->holds(*expert_file);
+    options.is_trainee_known = context.verified->holds(*trainee_file);
+  }
   const Result<compare::ComparedFiles> files = compare::compare_files(std::move(*opened), options);
   if (!files) return files.errors();
   const compare::ComparedSessions compared = files->sessions();

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 #include "recordings/session_reader.h"
 #include "scenes/scene_file.h"
+#include "studio/compare/session_track.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/server/call_table.h"
 #include "studio/server/scene_text.h"
@@ -29,6 +31,13 @@ Result<Done> write_poses(recordings::SessionReader& reader, std::size_t hand, st
     }
   }
   return Done{};
+}
+
+/// What only sessions of one scene share.
+std::string scene_key(const Model& model) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", (unsigned long long)compare::scene_hash(model));
+  return text;
 }
 
 /// A device over OpenIGTLink, as the options of `record` describe it.
@@ -98,7 +107,7 @@ Result<std::string> begin_training(Parameters& parameters, const CallContext& co
   output::JsonWriter warnings;
   write_errors(warnings, scene.warnings);
   return "{\"scene\": " + json_text(scene_path) + ", \"view\": " + view + ", \"warnings\": " + warnings.text() +
-         ", \"awaited\": " + json_text(*awaited) + "}";
+         ", \"awaited\": " + json_text(*awaited) + ", \"scene_key\": " + json_text(scene_key(start->model)) + "}";
 }
 
 Result<std::string> end_training(Parameters& parameters, const CallContext& context) {
@@ -118,6 +127,7 @@ Result<std::string> session_motion(Parameters& parameters, const CallContext& co
   if (reader->tick_count() / every > kMost) return Error{path, "is too long for this rate", ""};
   output::JsonWriter json;
   json.begin_object().member("interval_s", double(every) * reader->start().model.tick);
+  json.member("scene_key", std::string_view(scene_key(reader->start().model)));
   for (std::size_t hand = 0; hand < std::size_t(reader->start().model.hands); ++hand) {
     json.key(hand == 0 ? "poses" : "second_poses").begin_list();
     if (const Result<Done> written = write_poses(*reader, hand, every, json); !written) return written.errors();

@@ -119,14 +119,29 @@ Result<Vec3> triple_of(const std::string& text, const char* what) {
 /// Whether a camera is meant as places rather than by its name.
 bool is_of_places(const std::string& camera) { return camera.find_first_of(",:") != std::string::npos; }
 
-/// A camera given by two or three places. Error: what is wrong with them.
+/// The field of view in degrees. Error: it is no angle that a picture can have.
+Result<double> field_of_view_of(const std::string& text) {
+  char* end = nullptr;
+  const double angle = std::strtod(text.c_str(), &end);
+  if (*end == 0 && angle >= 1 && angle <= 170) return angle;
+  return Error{"", "the field of view '" + text + "' must be 1 to 170 degrees", ""};
+}
+
+/// A camera given by two or three places, and perhaps a field of view. Error: what is wrong with them.
 Result<render::Camera> placed_camera(const std::string& text, Vec3 up, double aspect) {
   const auto wrong = [&](const std::string& why) {
     return Error{output::option_name("look.camera"), "got '" + text + "': " + why, std::string("give ") + kPlaceHelp};
   };
-  const std::vector<std::string> parts = parts_of(text, ':');
+  std::vector<std::string> parts = parts_of(text, ':');
+  std::optional<double> field_of_view;
+  if (parts.size() > 2 && !parts.back().empty() && parts.back().find(',') == std::string::npos) {
+    const Result<double> read = field_of_view_of(parts.back());
+    if (!read) return wrong(read.errors()[0].message);
+    field_of_view = *read;
+    parts.pop_back();
+  }
   if (parts.size() == 1) return wrong("one place, and what it looks at is missing");
-  if (parts.size() > 3) return wrong(std::to_string(parts.size()) + " places, at most 3 are used");
+  if (parts.size() > 3) return wrong(std::to_string(parts.size()) + " places, at most 3 are used, and a field of view");
   constexpr const char* kWhat[] = {"the eye", "what it looks at", "the upward direction"};
   std::array<Vec3, 3> place{};
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -135,6 +150,7 @@ Result<render::Camera> placed_camera(const std::string& text, Vec3 up, double as
     place[i] = *read;
   }
   render::Camera camera{1e-3 * place[0], 1e-3 * place[1], parts.size() == 3 ? place[2] : up};
+  if (field_of_view) camera.fov_deg = *field_of_view;
   const Vec3 sight = camera.target - camera.eye;
   if (norm(sight) == 0) return wrong("the eye is at what it looks at");
   if (norm(camera.up) == 0) return wrong("the upward direction is 0");

@@ -17,8 +17,9 @@ struct LookRequest {
       0;  ///< value of the last colour [%, deg or N as in the legend]; 0: in a film its own range, else the default
   std::string cutaway;  ///< axis of the cutting plane, alone or with a position [mm]: y=12.5; empty: no cutaway
   /// A camera of the scene, `fitted`, `wound`, `press` or `follow`, or two places in mm: `X,Y,Z:X,Y,Z` looks from the
-  /// first at the second, and a third triple points up. Empty: with a cutaway one that sees the section, else wound
-  /// where something is cut, else press where something is pressed, else the scene's first, else fitted.
+  /// first at the second, a third triple points up, and a single number at the end is the vertical field of view in
+  /// degrees (else 32). Empty: with a cutaway one that sees the section, else wound where something is cut, else press
+  /// where something is pressed, else the scene's first, else fitted.
   std::string camera;
 };
 

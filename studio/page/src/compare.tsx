@@ -1,6 +1,7 @@
-import { useRef, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
+import { kEventOf } from "./place";
 import { firstOf, type Player } from "./player";
 import type { ComparisonResult, Listing, MeasureRow } from "./protocol";
 import { command, seconds, short } from "./text";
@@ -17,16 +18,16 @@ export function Compare({ connection, player, listing, comparison, onComparison,
 }) {
   const [error, setError] = useState<Error | null>(null);
   const [progress, setProgress] = useState<[number, number] | null>(null);
-  const running = useRef<AbortController | null>(null), shown = useRef<HTMLDivElement>(null);
+  const running = useRef<AbortController | null>(null), top = useRef<HTMLDivElement>(null);
   const first = player.tracks.get(0)!.session, second = player.tracks.get(1)?.session;
 
-  const align = (kind: string) => {
-    const time = player.alignAt(kind);
+  const align = (event: keyof typeof kEventOf) => {
+    const time = player.alignAt(event);
     if (time !== null) player.move(time);
   };
   const choose = async (path: string) => {
     await onBeside(path || undefined);
-    align("contact begins");
+    align("contact");
   };
   const compare = async () => {
     setError(null);
@@ -36,8 +37,7 @@ export function Compare({ connection, player, listing, comparison, onComparison,
       const result = await connection.call<ComparisonResult>("session.compare", { expert: first.path, trainee: second!.path },
         { progress: (done, total) => setProgress([done, total]), signal: running.current.signal });
       onComparison(result);
-      // What was asked for may be below the panel's end, or the window's.
-      requestAnimationFrame(() => requestAnimationFrame(() => shown.current?.querySelector(".jumps")?.scrollIntoView({ block: "nearest" })));
+      top.current?.scrollIntoView({ block: "nearest" }); // what it found is above what was pressed
       return result;
     } catch (failure) {
       setError(failure as Error);
@@ -52,10 +52,18 @@ export function Compare({ connection, player, listing, comparison, onComparison,
     if (result.path_s.length === 0) return setError(new Error("Both paths have no part in common."));
     player.alignAlong(result.path_s);
   };
-  const can = (kind: string) => !!second && firstOf(first.info, kind) !== null && firstOf(second.info, kind) !== null;
+  useEffect(() => {
+    if (!second || !player.isPathWanted) return;
+    player.isPathWanted = false;
+    void alignAlong();
+  }, [second, player.isPathWanted]);
+  const can = (event: keyof typeof kEventOf) => !!second && firstOf(first.info, kEventOf[event]) !== null && firstOf(second.info, kEventOf[event]) !== null;
+  const isOther = player.otherScene !== "";
 
   return (
     <>
+      <div ref={top} />
+      {second && comparison && <Outcome comparison={comparison} onMoment={(time) => player.moveBeside(time, comparison)} />}
       <Section title="Two sessions">
         <Readings rows={[["expert", <b class="first">{first.path}</b>]]} />
         <label class="field">
@@ -70,9 +78,9 @@ export function Compare({ connection, player, listing, comparison, onComparison,
           <>
             <button type="button" onClick={onSwap}>Swap expert and trainee</button>
             <div class="buttons" role="group" aria-label="Align at">
-              <button type="button" aria-pressed={player.aligned === "contact begins"} disabled={!can("contact begins")} onClick={() => align("contact begins")}>first contact</button>
+              <button type="button" aria-pressed={player.aligned === "contact"} disabled={!can("contact")} onClick={() => align("contact")}>first contact</button>
               <button type="button" aria-pressed={player.aligned === "cut"} disabled={!can("cut")} onClick={() => align("cut")}>first cut</button>
-              <button type="button" aria-pressed={player.aligned === "path"} disabled={progress !== null} onClick={() => void alignAlong()}>path</button>
+              <button type="button" aria-pressed={player.aligned === "path"} disabled={progress !== null || isOther} onClick={() => void alignAlong()}>path</button>
             </div>
             <label class="field">
               <span>by hand: the trainee is ahead by [s]</span>
@@ -80,31 +88,31 @@ export function Compare({ connection, player, listing, comparison, onComparison,
                 onChange={(e) => player.setOffset(Number(e.currentTarget.value) || 0)} />
             </label>
             {progress ? <Working what="comparing" done={progress[0]} total={progress[1]} onCancel={() => running.current?.abort()} />
-              : <button type="button" class="main" onClick={() => void compare()}>Compare</button>}
-            <ShownCommand text={command("compare", first.path, second.path, "-o", "report")} />
+              : <button type="button" class={comparison ? "" : "main"} disabled={isOther} onClick={() => void compare()}>{comparison ? "Compare again" : "Compare"}</button>}
+            {isOther ? <p class="warning">They are of different scenes: each has its own force, depth and speed below, but measures, worst moments, the path and the difference of force need one scene.</p>
+              : <ShownCommand text={command("compare", first.path, second.path, "-o", "report")} />}
           </>
         )}
         <Problems error={error} />
       </Section>
-      {second && comparison && <div ref={shown}><Result comparison={comparison} onMoment={(time) => player.moveBeside(time, comparison)} /></div>}
+      {second && comparison && <Measures comparison={comparison} />}
     </>
   );
 }
 
-const hasNone = (row: MeasureRow) => row.trainee_is.startsWith("no value");
+const kFirstAdvice = 2; // sentences that stand above the worst moments, so that these are seen too
 
-/** The worst moments and the measures; `onMoment` gets a time of the trainee's session. */
-export function Result({ comparison, onMoment }: { comparison: ComparisonResult; onMoment: (time: number) => void }) {
-  const { moments, measures, advice, less_done } = comparison.comparison;
-  const reasons = new Map<string, string[]>(); // why measures have no value
-  for (const row of measures)
-    if (hasNone(row)) reasons.set(row.trainee_is, [...(reasons.get(row.trainee_is) ?? []), row.measure]);
+/** What a trainee needs first: what to do better, and the worst moments. `onMoment` gets a time of the trainee's session. */
+export function Outcome({ comparison, onMoment }: { comparison: ComparisonResult; onMoment: (time: number) => void }) {
+  const { moments, advice } = comparison.comparison, more = advice.slice(kFirstAdvice);
   return (
     <>
-      {comparison.remarks.map((remark) => <p key={remark} class="warning">{remark}</p>)}
+      <Section title="What to do better">
+        <ul class="advice first-advice">{advice.slice(0, kFirstAdvice).map((sentence) => <li key={sentence}>{sentence}</li>)}</ul>
+      </Section>
       <Section title="Worst moments">
         {moments.length === 0 && <p class="good">No moment goes beyond a limit.</p>}
-        <ul class="jumps">
+        <ul class="jumps of-trainee">
           {moments.map((moment, i) => (
             <li key={i}>
               <button type="button" onClick={() => onMoment(moment.worst_s)}>
@@ -115,26 +123,41 @@ export function Result({ comparison, onMoment }: { comparison: ComparisonResult;
           ))}
         </ul>
       </Section>
-      <Section title="What to do better">
-        {less_done && <p class="hint">{less_done}</p>}
-        <ul class="advice">{advice.map((sentence) => <li key={sentence}>{sentence}</li>)}</ul>
-      </Section>
-      <Section title="Measures">
-        <table>
-          <thead><tr><th scope="col">measure</th><th scope="col">expert</th><th scope="col">trainee</th><th scope="col">is</th></tr></thead>
-          <tbody>
-            {measures.filter((row) => !hasNone(row)).map((row) => (
-              <tr key={row.key} title={row.meaning}>
-                <th scope="row">{row.measure} {row.unit !== "1" && <small>{row.unit}</small>}</th>
-                <td>{short(row.expert, 3)}</td>
-                <td>{short(row.trainee, 3)}</td>
-                <td class={row.trainee_is}>{row.trainee_is}</td>
-              </tr>
-            ))}
-          </tbody>
-        </table>
-        {[...reasons].map(([reason, names]) => <p key={reason} class="hint">{names.join(", ")}: {reason}</p>)}
-      </Section>
+      {more.length > 0 && (
+        <Section title="More to do better">
+          <ul class="advice">{more.map((sentence) => <li key={sentence}>{sentence}</li>)}</ul>
+        </Section>
+      )}
+      {comparison.remarks.map((remark) => <p key={remark} class="warning">{remark}</p>)}
     </>
+  );
+}
+
+const hasNone = (row: MeasureRow) => row.trainee_is.startsWith("no value");
+
+/** Each measure of both sessions. */
+export function Measures({ comparison }: { comparison: ComparisonResult }) {
+  const { measures, less_done } = comparison.comparison;
+  const reasons = new Map<string, string[]>(); // why measures have no value
+  for (const row of measures)
+    if (hasNone(row)) reasons.set(row.trainee_is, [...(reasons.get(row.trainee_is) ?? []), row.measure]);
+  return (
+    <Section title="Measures">
+      {less_done && <p class="hint">{less_done}</p>}
+      <table>
+        <thead><tr><th scope="col">measure</th><th scope="col">expert</th><th scope="col">trainee</th><th scope="col">is</th></tr></thead>
+        <tbody>
+          {measures.filter((row) => !hasNone(row)).map((row) => (
+            <tr key={row.key} title={row.meaning}>
+              <th scope="row">{row.measure} {row.unit !== "1" && <small>{row.unit}</small>}</th>
+              <td>{short(row.expert, 3)}</td>
+              <td>{short(row.trainee, 3)}</td>
+              <td class={row.trainee_is}>{row.trainee_is}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      {[...reasons].map(([reason, names]) => <p key={reason} class="hint">{names.join(", ")}: {reason}</p>)}
+    </Section>
   );
 }

@@ -1,6 +1,6 @@
 import { useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
-import { type Look, lookParameters, lookWords } from "./look";
+import { asSeen, isFree, type Look, lookParameters, lookWords } from "./look";
 import { Problems, Section, ShownCommand, Working } from "./parts";
 import type { Player } from "./player";
 import { bytes, command, seconds } from "./text";
@@ -25,8 +25,7 @@ const kSizes = ["1280x720", "1920x1080", "854x480", "1080x1080", "720x1280"];
 const kOverlays: [string, string][] = [["full", "full"], ["small", "small"], ["none", "none"]];
 const kAligned: [string, string][] = [["", "path, else first contact"], ["path", "path of the tool"], ["contact", "first contact"], ["cut", "first cut"], ["clock", "clock"]];
 /** How the command brings both together as they are seen here. */
-const kSeen: Record<string, string> = { path: "path", "contact begins": "contact", cut: "cut" };
-const seenAlign = (player: Player) => kSeen[player.aligned] ?? (player.offset === 0 ? "" : String(Number(player.offset.toFixed(6))));
+const seenAlign = (player: Player) => player.aligned || (player.offset === 0 ? "clock" : String(Number(player.offset.toFixed(6))));
 const kKept = 60000; // until a download has begun [ms]
 const kSlow: [string, string][] = [["cut", "cuts"], ["damage", "damage"], ["worst", "largest force and depth"]];
 
@@ -47,6 +46,7 @@ export function ExportForm({ connection, player, look }: { connection: Connectio
   const [from, setFrom] = useState("0"), [to, setTo] = useState("");
   const [speed, setSpeed] = useState("1"), [fps, setFps] = useState("30");
   const [size, setSize] = useState(kSizes[0]), [overlay, setOverlay] = useState("full"), [chosenAlign, setAlign] = useState<string | null>(null);
+  const [isAsSeen, setAsSeen] = useState(true);
   const [slow, setSlow] = useState<string[]>([]), [isDifferentShown, showDifferent] = useState(false);
   const [progress, setProgress] = useState<[number, number] | null>(null);
   const [result, setResult] = useState<Exported | null>(null);
@@ -56,13 +56,14 @@ export function ExportForm({ connection, player, look }: { connection: Connectio
   const align = chosenAlign ?? seenAlign(player);
   const byHand = [align, seenAlign(player)].find((key) => !kAligned.some(([known]) => known === key));
   const aligned: [string, string][] = byHand === undefined ? kAligned : [...kAligned, [byHand, `by hand: ahead by ${byHand} s`]];
+  const filmed = isAsSeen ? asSeen(look, player.viewer.seen(), session.view.up) : { ...look, camera: "" };
   const slowAt = beside ? "" : slow.join(",");
   const start = async () => {
     stop.current = new AbortController();
     setError(null), setResult(null), setProgress([0, 1]);
     const params = {
       path: session.path, beside, output, from_s: number(from), to_s: number(to), speed: number(speed), fps: number(fps), size, overlay,
-      align: (beside && align) || undefined, slow_at: slowAt || undefined, allow_diverged: isDifferentShown, ...lookParameters(look),
+      align: (beside && align) || undefined, slow_at: slowAt || undefined, allow_diverged: isDifferentShown, ...lookParameters(filmed),
     };
     try {
       setResult(await connection.call<Exported>("session.export", params,
@@ -80,7 +81,7 @@ export function ExportForm({ connection, player, look }: { connection: Connectio
   const shown = command("export", session.path, "-o", output, ...(beside ? ["--beside", beside, ...words("--align", align, "")] : []),
     ...(number(from) ? ["--from-s", from] : []), ...words("--to-s", to, ""), ...words("--speed", speed, "1"), ...words("--fps", fps, "30"),
     ...words("--size", size, kSizes[0]), ...words("--overlay", overlay, "full"), ...words("--slow-at", slowAt, ""),
-    ...(isDifferentShown ? ["--allow-diverged"] : []), ...lookWords(look));
+    ...(isDifferentShown ? ["--allow-diverged"] : []), ...lookWords(filmed));
   const field = (label: string, value: string, set: (value: string) => void, type = "text") => (
     <label class="field">
       <span>{label}</span>
@@ -100,7 +101,7 @@ export function ExportForm({ connection, player, look }: { connection: Connectio
   );
   return (
     <Section title="Video">
-      <p class="hint">It shows what is seen here: view, cutaway and camera are those below the picture.</p>
+      <p class="hint">View and cutaway are those below the picture.</p>
       {field("file in the folder: .mp4, .avi", output, setOutput)}
       <div class="pair">
         {field("from [s]", from, setFrom, "number")}
@@ -117,6 +118,10 @@ export function ExportForm({ connection, player, look }: { connection: Connectio
           {kSlow.map(([key, name]) => tick(name, slow.includes(key), (on) => setSlow(kSlow.map(([k]) => k).filter((k) => (k === key ? on : slow.includes(k))))))}
         </fieldset>
       )}
+      {choice("camera", isAsSeen ? "seen" : "", (chosen) => setAsSeen(chosen === "seen"), [
+        ["seen", look.camera && !isFree(look) ? `what is seen here: ${look.camera}` : "what is seen here"],
+        ["", "automatic: sees the wound or the press"],
+      ])}
       <div class="pair">
         {choice("size", size, setSize, kSizes.map((s): [string, string] => [s, s.replace("x", " × ")]))}
         {choice("overlay", overlay, setOverlay, kOverlays)}

@@ -4,7 +4,7 @@ import type { Connection } from "./connection";
 import { listOf } from "./items";
 import { findJson, parseJson } from "./json_edit";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
-import { command, millimetres } from "./text";
+import { command, millimetres, ofStep } from "./text";
 
 const kMostSpheres = 60000; // that the slider offers, as estimated
 
@@ -89,10 +89,9 @@ function Cost({ scene }: { scene: AuthorScene }) {
     <Section title="What it costs">
       <Readings rows={[
         ["elements", isLoading ? scene.fillingText : String(shown?.elements ?? "–")],
-        ["time per tick", time ? `${(1e3 * time.measured_tick_time_s).toFixed(2)} ms` : isLoading ? scene.fillingText : scene.measuringText],
-        ["of a tick", time ? `${(100 * share).toFixed(0)} % of ${(1e3 * time.tick_s).toFixed(0)} ms` : "–"],
+        ["a step takes", time ? ofStep(time.measured_tick_time_s, time.tick_s) : isLoading ? scene.fillingText : scene.measuringText],
       ]} />
-      {time && <p class={share > 0.7 ? "warning" : "hint"} role="status">{share > 1 ? "Slower than real time on this machine." : share > 0.7 ? "Little is left for contact and cuts." : `Measured here and now at rest, median of ${time.ticks} ticks.`}</p>}
+      {time && <p class={share > 0.7 ? "warning" : "hint"} role="status">{share > 1 ? "Slower than real time on this machine." : share > 0.7 ? "Little is left for contact and cuts." : `Measured here and now at rest, median of ${time.ticks} steps.`}</p>}
     </Section>
   );
 }

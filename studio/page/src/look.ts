@@ -6,7 +6,7 @@ export interface Look {
   view: string; // surface, spheres, both, elements
   by: string; // of elements; empty: stretch
   cutaway: string; // an axis and its place in mm, as y=12.5; empty: none
-  camera: string; // its name, or two places as freeCamera() writes them; empty: the one that `export` chooses
+  camera: string; // its name, or places as freeCamera() writes them; empty: the one that `export` chooses
 }
 
 export const kPlainLook: Look = { view: "surface", by: "", cutaway: "", camera: "" };
@@ -17,7 +17,7 @@ export const kViews: [string, string][] = [
   ["elements stretch", "elements by stretch"], ["elements tilt", "elements by tilt"], ["elements force", "elements by force"],
 ];
 export const kAxes = ["x", "y", "z"];
-const kFieldOfView = 32; // of cameras that are given by places, vertical [degrees]
+const kFieldOfView = 32; // of cameras whose text names none, vertical [degrees]
 const kWide = 16 / 9; // pictures for which cameras are set up; in narrower ones they step back
 
 export function viewOf(look: Look): string {
@@ -45,14 +45,20 @@ export function isFree(look: Look): boolean {
   return look.camera.includes(":");
 }
 
-/** A camera as the text of `--camera`; `up`: that of the scene. */
+/** A camera as the text of `--camera`: the eye, what it looks at, and where they are not the usual ones the upward direction
+    and the field of view. `up`: that of the scene. */
 export function freeCamera(camera: CameraView, up: Vector): string {
-  const target = new Vector3(...camera.target), eye = new Vector3(...camera.eye);
-  const farther = Math.tan((camera.fov_deg * Math.PI) / 360) / Math.tan((kFieldOfView * Math.PI) / 360);
-  const places = [eye.sub(target).multiplyScalar(farther).add(target), target].map((v) => v.multiplyScalar(1e3));
+  const triple = (v: Vector3) => v.toArray().map((x) => Number(x.toFixed(2))).join(",");
+  const parts = [camera.eye, camera.target].map((place) => triple(new Vector3(...place).multiplyScalar(1e3)));
   const own = new Vector3(...camera.up).normalize();
-  if (own.dot(new Vector3(...up)) < 0.9999) places.push(own);
-  return places.map((v) => v.toArray().map((x) => Number(x.toFixed(2))).join(",")).join(":");
+  if (own.dot(new Vector3(...up)) < 0.9999) parts.push(triple(own));
+  if (Math.abs(camera.fov_deg - kFieldOfView) > 5e-4) parts.push(String(Number(camera.fov_deg.toFixed(3))));
+  return parts.join(":");
+}
+
+/** The look as it is seen: where the program chose the camera, that camera. */
+export function asSeen(look: Look, seen: CameraView, up: Vector): Look {
+  return look.camera ? look : { ...look, camera: freeCamera(seen, up) };
 }
 
 /** The camera of the page that sees what a camera of a picture of that size sees. */

@@ -1,7 +1,7 @@
 import type { Binary, Connection } from "./connection";
-import type { ComparisonResult, Drawing, Frame, OpenedSession, Seen, SessionInfo, TimelineData, Shapes } from "./protocol";
-import { freeCamera, isPlain, type Look, lookParameters, steppedForward } from "./look";
-import type { Place } from "./place";
+import type { CameraView, Comparable, ComparisonResult, Drawing, Frame, OpenedSession, Seen, SessionInfo, TimelineData, Shapes } from "./protocol";
+import { freeCamera, isPlain, kPlainLook, type Look, lookParameters, steppedForward } from "./look";
+import { type Alignment, kEventOf, type Place } from "./place";
 import { StageScene } from "./stage_scene";
 import { firstCamera, type Viewer } from "./viewer";
 
@@ -25,13 +25,21 @@ export function firstOf(info: SessionInfo, kind: string): number | null {
   return event ? event.tick * info.tick_s : null;
 }
 
+/** How far a camera is from what it looks at [m]. */
+function farOf({ eye, target }: CameraView): number {
+  return Math.hypot(...eye.map((x, axis) => x - target[axis]));
+}
+
 /** The clock of a review: moves to a moment, plays, and asks the program for one picture at a time. */
 export class Player {
   readonly tracks = new Map<number, Track>();
   time = 0; // of stage 0 [s]
   speed = 1;
   offset = 0; // time of stage 1 where that of stage 0 is 0 [s]
-  aligned = ""; // event or "path" at which both sessions were brought together; empty: by hand
+  aligned: Alignment | "" = ""; // what brought both sessions together; empty: a hand
+  otherScene = ""; // why the session beside cannot be compared: it is of another scene; empty: it can
+  isPathWanted = false; // a link leads to sessions along their path, which is known once they are compared
+  look: Look = kPlainLook; // how they are seen
   isPlaying = false;
   pictureAfter: number | null = null; // time from the last move to its picture, a glimpse or not [ms]
   replayedAfter: number | null = null; // the same, to the replayed one [ms]
@@ -69,7 +77,7 @@ export class Player {
   }
 
   /** Opens what a place names, at its moment: both sessions at once, and no picture of another moment is asked for. */
-  async openAt({ session, beside, ahead, time, besideTime, comparison }: Place): Promise<void> {
+  async openAt({ session, beside, ahead, align, time, besideTime, comparison }: Place): Promise<void> {
     if (session === undefined) return;
     if (beside === undefined) this.close(1);
     else this.drop(1); // nothing of it is to be seen beside the new one
@@ -78,9 +86,11 @@ export class Player {
     else if (!first.value) return; // another one was opened meanwhile
     else {
       this.path = null, this.aligned = "";
-      const hasBoth = second.status === "fulfilled" && second.value;
-      if (hasBoth && ahead !== undefined) this.offset = ahead;
-      else if (!hasBoth || !this.bringTogether("contact begins")) this.offset = 0;
+      const hasBoth = second.status === "fulfilled" && second.value !== null;
+      this.isPathWanted = hasBoth && align === "path";
+      const isByEvent = hasBoth && (align === "contact" || align === "cut") && this.bringTogether(align);
+      if (hasBoth && ahead !== undefined && !isByEvent) this.offset = ahead;
+      else if (!isByEvent && (!hasBoth || !this.bringTogether("contact"))) this.offset = 0;
       if (hasBoth && besideTime !== undefined && comparison) this.moveBeside(besideTime, comparison);
       else this.move(time ?? 0);
     }
@@ -107,7 +117,23 @@ export class Player {
     const camera = stage === 0 && firstCamera(session.view);
     if (camera) this.viewer.look(camera);
     void this.addCurves(track);
+    void this.askForScenes();
     return track;
+  }
+
+  /** Asks whether both sessions are of one scene, as they must be to be compared. */
+  private async askForScenes(): Promise<void> {
+    const shown = [0, 1].map((stage) => this.tracks.get(stage)), [expert, trainee] = shown.map((track) => track?.session.path);
+    if (!expert || !trainee) return;
+    const isShown = () => shown.every((track, stage) => this.tracks.get(stage) === track);
+    try {
+      const { comparable, text } = await this.connection.call<Comparable>("session.comparable", { expert, trainee });
+      if (!isShown()) return;
+      this.otherScene = comparable ? "" : text;
+      this.onChange();
+    } catch (failure) {
+      if (isShown()) this.onFailure(failure as Error);
+    }
   }
 
   private async addCurves(track: Track): Promise<void> {
@@ -131,6 +157,7 @@ export class Player {
     this.waiting.delete(stage), this.unanswered.delete(stage), this.unseen.delete(stage), this.asked.delete(stage), this.drawings.delete(stage);
     this.goOn();
     if (stage === 1) this.path = null;
+    this.otherScene = "";
     this.viewer.isCovered = false;
     this.viewer.set(stage, null);
     this.onDrawing(stage, null);
@@ -178,8 +205,9 @@ export class Player {
 
   /** Sees the sessions as the program says; what the page cannot draw, the program draws in pictures of that size. One
       picture is asked for at a time, so that a hand that turns the view is followed as fast as they come. What comes of a
-      session that is no longer shown, a failure too, is of no interest. */
-  async see(look: Look, size: string, onSeen: (seen: Seen) => void): Promise<void> {
+      session that is no longer shown, a failure too, is of no interest. `onSeen` may hear of a look that was asked for later. */
+  async see(look: Look, size: string, onSeen: (seen: Seen, as: Look) => void): Promise<void> {
+    this.look = look;
     this.wanted = { look, size };
     if (this.isLooking) return;
     this.isLooking = true;
@@ -192,7 +220,7 @@ export class Player {
           if (isShown()) throw failure;
           return null;
         });
-        if (seen && isShown()) onSeen(seen);
+        if (seen && isShown()) onSeen(seen, newest);
       }
     } finally {
       this.isLooking = false;
@@ -208,7 +236,9 @@ export class Player {
       // As in a video, all of one scene is seen as the first one is.
       const isAlike = JSON.stringify([first.session.view.least, first.session.view.most]) === JSON.stringify([second.session.view.least, second.session.view.most]);
       const camera = isAlike && look.camera !== "follow" ? freeCamera(seen.camera, second.session.view.up) : look.camera;
-      await ask(1, { ...look, camera });
+      const other = await ask(1, { ...look, camera });
+      // The page sees both with one camera: of two scenes, the one that is farther away has both in its picture.
+      if (!isAlike && !size && farOf(other.camera) > farOf(seen.camera)) seen.camera = other.camera;
     }
     if (size || this.drawings.size > 0) {
       this.drawings.clear();
@@ -226,7 +256,10 @@ export class Player {
   /** What an address needs to lead here again. */
   get place(): Place {
     const [first, second] = [0, 1].map((stage) => this.tracks.get(stage)?.session.path);
-    return { session: first, beside: second, ahead: second && this.besideAt(this.time) - this.time, time: this.time } as Place;
+    return {
+      session: first, beside: second, ahead: second && this.besideAt(this.time) - this.time, align: this.aligned || undefined,
+      time: this.time, look: this.look,
+    } as Place;
   }
 
   setOffset(offset: number): void {
@@ -235,20 +268,20 @@ export class Player {
     this.onChange();
   }
 
-  /** Aligns both sessions where an event of that kind first happened. Null: one of them has none. */
-  alignAt(kind: string): number | null {
-    if (!this.bringTogether(kind)) return null;
+  /** Aligns both sessions where an event first happened. Null: one of them has none. */
+  alignAt(event: keyof typeof kEventOf): number | null {
+    if (!this.bringTogether(event)) return null;
     this.move(this.time);
     this.onChange();
-    return firstOf(this.tracks.get(0)!.session.info, kind);
+    return firstOf(this.tracks.get(0)!.session.info, kEventOf[event]);
   }
 
   /** The same, without a move. */
-  private bringTogether(kind: string): boolean {
-    const first = this.tracks.get(0), second = this.tracks.get(1);
+  private bringTogether(event: keyof typeof kEventOf): boolean {
+    const first = this.tracks.get(0), second = this.tracks.get(1), kind = kEventOf[event];
     const here = first ? firstOf(first.session.info, kind) : null, there = second ? firstOf(second.session.info, kind) : null;
     if (here === null || there === null) return false;
-    this.offset = there - here, this.path = null, this.aligned = kind;
+    this.offset = there - here, this.path = null, this.aligned = event;
     return true;
   }
 

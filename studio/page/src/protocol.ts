@@ -156,13 +156,21 @@ export interface ComparisonResult {
   path_s: [number, number][];
 }
 
+/** Whether two sessions can be compared. */
+export interface Comparable {
+  comparable: boolean;
+  text: string; // why not; empty: they can
+}
+
 export interface Motion {
+  scene_key: string; // that only sessions of one scene share
   interval_s: number;
   poses: number[][]; // tool, position, orientation w x y z
 }
 
 export interface BegunTraining {
   awaited: string; // where a device is awaited
+  scene_key: string; // as Motion has it
   scene: string;
   view: SceneView;
   warnings: Problem[];

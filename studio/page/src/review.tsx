@@ -6,22 +6,19 @@ import { ExportForm } from "./export_form";
 import { freeCamera, isFree, kPlainLook, type Look, mirrored, planeOf } from "./look";
 import { LegendBar, LookFields } from "./look_fields";
 import { NotesPanel } from "./notes";
-import { Empty, Problems, Readings, Section, ShownCommand, Working } from "./parts";
+import { Moment, shownEvents } from "./moment";
+import { Empty, Problems } from "./parts";
 import type { Place } from "./place";
 import { Player } from "./player";
-import type { ComparisonResult, Legend, Listing, Note, SessionEvent } from "./protocol";
+import type { ComparisonResult, Legend, Listing, Note } from "./protocol";
+import { Clocks } from "./time_axis";
 import { Mark, Timeline } from "./timeline";
-import { behind, bytes, command, millimetres, newtons, seconds, tickRows } from "./text";
+import { bytes, seconds } from "./text";
 import { kTurns, Viewer } from "./viewer";
 
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4];
 const kPanels = ["moment", "compare", "notes", "export"] as const;
 type Panel = (typeof kPanels)[number];
-
-/** What happened in a session; late ticks are counted elsewhere. */
-function shownEvents(events: SessionEvent[]): SessionEvent[] {
-  return events.filter((event) => event.kind !== "late tick");
-}
 
 export function Review({ connection, listing, place, onPlace }: {
   connection: Connection;
@@ -38,7 +35,8 @@ export function Review({ connection, listing, place, onPlace }: {
   const [panel, setPanel] = useState<Panel>("moment");
   const [notes, setNotes] = useState<{ list: Note[]; stage: number }>({ list: [], stage: 0 });
   const [comparison, setComparison] = useState<ComparisonResult | null>(null);
-  const [look, setLook] = useState<Look>(kPlainLook);
+  const [look, setLook] = useState<Look>(place.look ?? kPlainLook);
+  const turned = useRef<string | null>(null); // camera to which a hand has turned the view
   const [legend, setLegend] = useState<Legend | null>(null);
 
   useEffect(() => {
@@ -76,6 +74,10 @@ export function Review({ connection, listing, place, onPlace }: {
     if (!player) return;
     setError(null), setUnopened(null);
     setComparison(null);
+    // A view that a hand has turned is one of the session before.
+    turned.current = null;
+    setLook((now) => there.look ?? (isFree(now) ? { ...now, camera: "" } : now));
+    if (there.align === "path") setPanel("compare"); // which compares them
     try {
       await player.openAt(there);
     } catch (failure) {
@@ -105,9 +107,7 @@ export function Review({ connection, listing, place, onPlace }: {
     if (!player || !first || !second) return;
     const [expert, trainee] = [first, second].map(({ session }) => session.path), { aligned } = player;
     const beside = player.timeOf(1), ahead = beside - player.time;
-    await openAt({ session: trainee, beside: expert, ahead: -ahead, time: beside });
-    player.aligned = aligned === "path" ? "" : aligned; // a path is of the comparison before
-    setVersion((v) => v + 1);
+    await openAt({ session: trainee, beside: expert, ahead: -ahead, align: aligned === "path" ? undefined : aligned || undefined, time: beside, look });
   };
 
   // The address names a session and a moment: a link leads there.
@@ -124,16 +124,20 @@ export function Review({ connection, listing, place, onPlace }: {
   const size = canvas.current && player ? sizeOf(canvas.current, player.tracks.size) : "";
   useEffect(() => {
     if (!player || !first) return;
-    player.see(look, size, (seen) => {
+    player.see(look, size, (seen, as) => {
       setError(null);
       setLegend(seen.title ? seen : null);
-      if (!isFree(look)) player.viewer.look(seen.camera);
+      if (as.camera !== turned.current) player.viewer.look(seen.camera); // else a hand may have turned it farther
+      setVersion((v) => v + 1); // what an export sees
     }).catch(setError);
   }, [player, first, second, look, size]);
   useEffect(() => {
     if (!player || !first) return;
     const { viewer } = player;
-    viewer.onTurn = () => setLook((now) => ({ ...now, camera: freeCamera(viewer.seen(), first.session.view.up) }));
+    viewer.onTurn = () => {
+      const camera = (turned.current = freeCamera(viewer.seen(), first.session.view.up));
+      setLook((now) => ({ ...now, camera }));
+    };
   }, [player, first]);
   const otherSide = () => {
     const plane = first && planeOf(look, first.session.view);
@@ -218,6 +222,11 @@ export function Review({ connection, listing, place, onPlace }: {
             {second && <span class="second"><b>trainee: {second.session.path} {seconds(player!.timeOf(1))}</b></span>}
           </div>
         )}
+        {second && player!.otherScene && (
+          <div class="other-scene" role="alert">
+            <b>Different scenes: they cannot be compared.</b> {player!.otherScene}.
+          </div>
+        )}
         {first && legend && <LegendBar legend={legend} />}
         {first && (
           <div class="look-bar">
@@ -242,7 +251,7 @@ export function Review({ connection, listing, place, onPlace }: {
                   {kSpeeds.map((speed) => <option key={speed} value={speed}>{speed} ×</option>)}
                 </select>
               </label>
-              <output class="clock">{seconds(player.time)} <small>of {seconds(player.span.to)}</small></output>
+              <Clocks player={player} />
               {player.isPlaying && player.reached < 0.9 * player.speed && (
                 <span class="hint">plays at {player.reached.toFixed(2)} ×: this machine simulates no faster</span>
               )}
@@ -275,78 +284,5 @@ export function Review({ connection, listing, place, onPlace }: {
         )}
       </aside>
     </div>
-  );
-}
-
-type ShownFrame = { force: number[]; depth: number; contacts: number; severed: number; isSame: boolean; isGlimpse: boolean; missed: number; tick: number; second: { force: number[]; depth: number } | null } | null;
-
-function Moment({ connection, player, frame, other }: { connection: Connection; player: Player; frame: ShownFrame; other: ShownFrame }) {
-  const [verdict, setVerdict] = useState<{ same: boolean; text: string } | null>(null);
-  const [progress, setProgress] = useState<[number, number] | null>(null);
-  const [error, setError] = useState<Error | null>(null);
-  const running = useRef<AbortController | null>(null);
-  const { path, info } = player.tracks.get(0)!.session;
-  useEffect(() => setVerdict(null), [path]);
-
-  const verify = async () => {
-    setError(null);
-    setProgress([0, 1]);
-    running.current = new AbortController();
-    try {
-      setVerdict(await connection.call("session.verify", { path },
-        { progress: (done, total) => setProgress([done, total]), signal: running.current.signal }));
-    } catch (failure) {
-      setError(failure as Error);
-    }
-    setProgress(null);
-  };
-  const rows = (shown: ShownFrame): [string, string][] => shown ? [
-    ["force", newtons(Math.hypot(...shown.force))],
-    ["depth", millimetres(shown.depth, 2)],
-    ...(shown.second
-      ? ([["force, left", newtons(Math.hypot(...shown.second.force))], ["depth, left", millimetres(shown.second.depth, 2)]] as [string, string][])
-      : []),
-    ["touched", `${shown.contacts} points`],
-    ["severed", `${shown.severed} elements`],
-    ["replay", shown.isGlimpse ? "is computed…" : shown.isSame ? "as recorded" : "DIFFERS"],
-  ] : [];
-  return (
-    <>
-      <Section title={other ? "This moment, expert" : "This moment"}>
-        <Readings rows={[["tick", String(frame?.tick ?? 0)], ...rows(frame),
-          ["picture after", player.pictureAfter === null ? "…" : `${player.pictureAfter.toFixed(0)} ms`],
-          ["replayed after", player.replayedAfter === null ? "…" : `${player.replayedAfter.toFixed(0)} ms`]]} />
-      </Section>
-      {other && <Section title="Trainee"><Readings rows={rows(other)} /></Section>}
-      <Section title="Events">
-        <ul class="jumps">
-          {shownEvents(info.events).map((event, i) => (
-            <li key={i}>
-              <button type="button" onClick={() => player.move(event.tick * info.tick_s)}>
-                <span class="number">{seconds(event.tick * info.tick_s)}</span> {event.text}
-              </button>
-            </li>
-          ))}
-        </ul>
-        {info.events.length === 0 && <p class="hint">Nothing was touched in this session.</p>}
-      </Section>
-      <Section title="Session">
-        <Readings rows={[
-          ["recorded", info.created_utc.replace("T", " ").replace("Z", " UTC") || "its time of day was taken out"],
-          ["network", `${info.spheres} spheres`],
-          ["largest force", newtons(info.max_force_n)],
-          ["largest depth", millimetres(info.max_depth_m, 2)],
-          ...tickRows(info.tick_time_p50_s, info.tick_time_p99_s, info.tick_s),
-          ["late ticks", String(info.late_ticks)],
-          ["behind the clock", behind(info.slip_s, info.slip_max_s)],
-        ]} />
-        {[info.physics_remark, ...info.remarks].filter(Boolean).map((remark) => <p key={remark} class="warning">{remark}</p>)}
-        {progress ? <Working what="verifying" done={progress[0]} total={progress[1]} onCancel={() => running.current?.abort()} />
-          : <button type="button" onClick={() => void verify()}>Verify the replay</button>}
-        {verdict && <p class={verdict.same ? "good" : "warning"} role="status">{verdict.text}</p>}
-        <Problems error={error} />
-        <ShownCommand text={command("verify", path)} />
-      </Section>
-    </>
   );
 }

@@ -39,11 +39,16 @@ export function bytes(count: number): string {
   return count < 1e6 ? `${(count / 1e3).toFixed(0)} kB` : `${(count / 1e6).toFixed(1)} MB`;
 }
 
-/** How long ticks took, and whether they hold their rate: what a session's p50 and p99 say. */
+/** How long a step of the simulation, a tick, took or takes, and how long it may. */
+export function ofStep(time: number, tick: number): string {
+  return `${(1e3 * time).toFixed(2)} ms of the ${Number((1e3 * tick).toPrecision(3))} ms it has`;
+}
+
+/** How long ticks took, and whether they kept pace with the clock: what a session's p50 and p99 say. */
 export function tickRows(p50: number, p99: number, tick: number): [string, string][] {
   return [
-    ["half of the ticks", underMs(p50, 2)], ["99 of 100 ticks", underMs(p99, 2)],
-    [`${Number((1e-3 / tick).toPrecision(3))} kHz`, p99 <= tick ? "holds" : `does not hold: a tick has ${Number((1e3 * tick).toPrecision(3))} ms`],
+    ["half of the steps took", underMs(p50, 2)], ["99 of 100 steps took", underMs(p99, 2)],
+    ["a step has", `${Number((1e3 * tick).toPrecision(3))} ms: they ${p99 <= tick ? "kept" : "did not keep"} pace`],
   ];
 }
 

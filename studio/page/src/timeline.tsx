@@ -3,6 +3,7 @@ import uPlot from "uplot";
 import type { Player } from "./player";
 import type { TimelineData } from "./protocol";
 import { seconds } from "./text";
+import { alignedText, TimeAxes } from "./time_axis";
 
 export interface Mark {
   time: number; // of stage 0 [s]
@@ -66,7 +67,7 @@ function options(width: number, colours: string[]): uPlot.Options {
 export function Timeline({ player, marks, version }: { player: Player; marks: Mark[]; version: number }) {
   const box = useRef<HTMLDivElement>(null), head = useRef<HTMLDivElement>(null), slider = useRef<HTMLInputElement>(null);
   const first = player.tracks.get(0)?.timeline ?? null, second = player.tracks.get(1)?.timeline ?? null;
-  const { span, offset, path } = player;
+  const { span, offset, path, otherScene } = player;
   const rows = useRef<{ element: HTMLElement; at(): (number | null)[]; digits: number }[]>([]); // what each writes beside its name
   const [zoom, setZoom] = useState<{ from: number; to: number } | null>(null); // null: everything is shown
   const from = Math.max(zoom?.from ?? span.from, span.from), to = Math.max(Math.min(zoom?.to ?? span.to, span.to), from);
@@ -100,7 +101,7 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
       };
       add(`${row.title} [${row.unit}]`, series, [kFirst, kSecond], row.digits, () => [now(first, 0), ...(second ? [now(second, 1)] : [])]);
     }
-    if (second) {
+    if (second && !otherScene) {
       const forceAt = (data: TimelineData, stage: number) => valueAt(data.force_n, data.duration_s, player.timeOf(stage));
       add("difference of force [N]", [times.map((t) => {
         const own = mostIn(first.force_n, first.duration_s, t - half, t + half);
@@ -121,14 +122,15 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
       rows.current = [];
       holder.replaceChildren();
     };
-  }, [first, second, from, to, offset, path]);
+  }, [first, second, from, to, offset, path, otherScene]);
 
   useEffect(() => {
     const place = () => {
       const share = shareOf(player.time);
       head.current?.style.setProperty("--at", String(share));
       if (slider.current && document.activeElement !== slider.current) slider.current.value = String(player.time);
-      slider.current?.setAttribute("aria-valuetext", seconds(player.time));
+      slider.current?.setAttribute("aria-valuetext",
+        player.tracks.has(1) ? `expert ${seconds(player.time)}, trainee ${seconds(player.timeOf(1))}` : seconds(player.time));
       for (const { element, at, digits } of rows.current) {
         const text = at().map((value) => (value === null ? "–" : value.toFixed(digits))).join(" · ");
         if (element.dataset.at !== text) element.dataset.at = text;
@@ -203,11 +205,13 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
         <div ref={box} />
         <div ref={head} class="playhead" hidden={player.time < from || player.time > to} />
       </div>
+      <TimeAxes player={player} from={from} to={to} />
       <div class="zoom" role="group" aria-label="Zoom of the timeline">
         <button type="button" title="full stop, or the wheel" onClick={() => zoomBy(1 / kZoomStep, Math.min(Math.max(player.time, from), to))}>zoom in</button>
         <button type="button" title="comma" disabled={!zoom} onClick={() => zoomBy(kZoomStep, Math.min(Math.max(player.time, from), to))}>zoom out</button>
         {zoom && <button type="button" title="0" onClick={() => setZoom(null)}>all</button>}
         {zoom && <output>{seconds(from)} to {seconds(to)}</output>}
+        {player.tracks.has(1) && <span class="aligned">{alignedText(player)}</span>}
       </div>
       <input ref={slider} class="scrub" type="range" min={from} max={to} step={0.001} aria-label="Moment of the session"
         onInput={(event) => {

@@ -1,10 +1,10 @@
 import { useCallback, useEffect, useRef, useState } from "preact/hooks";
-import { Result } from "./compare";
+import { Measures, Outcome } from "./compare";
 import type { Connection } from "./connection";
 import { DeviceForm } from "./device";
 import { deviceParameters, deviceWords, storedDevice, storeDevice } from "./device_choice";
 import { Empty, HeldButton, Problems, Readings, Section, ShownCommand, Working } from "./parts";
-import { type CameraView, type ComparisonResult, type EndedTraining, type Listing, type Motion, problemText } from "./protocol";
+import { type CameraView, type Comparable, type ComparisonResult, type EndedTraining, type Listing, type Motion, problemText } from "./protocol";
 import { behind, command, millimetres, newtons, seconds, tickRows, underMs } from "./text";
 import type { Place } from "./place";
 import { ForceSound } from "./sound";
@@ -122,7 +122,10 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
   useEffect(() => {
     if (!trainer) return;
     trainer.setExpert(null);
-    if (expert) connection.call<Motion>("session.motion", { path: expert, rate_hz: 60 }).then((motion) => trainer.setExpert(motion), setError);
+    if (expert) connection.call<Motion>("session.motion", { path: expert, rate_hz: 60 }).then((motion) => {
+      trainer.setExpert(motion);
+      setTick((t) => t + 1);
+    }, setError);
   }, [trainer, expert]);
 
   useEffect(() => {
@@ -328,7 +331,8 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
             </Section>
             <Section title="Expert">
               <ExpertChoice listing={listing.sessions} expert={expert} onExpert={setExpert} use="shown as a ghost" />
-              {expert && trainer && (
+              {trainer?.isExpertOfOtherScene && <p class="warning" role="alert">{expert} is of another scene than this one: its ghost is not shown, and it cannot be compared with.</p>}
+              {expert && trainer && !trainer.isExpertOfOtherScene && (
                 <label class="field">
                   <span>the ghost is</span>
                   <select value={trainer.ghostAhead} onChange={(e) => {
@@ -384,7 +388,17 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
   const [progress, setProgress] = useState<[number, number] | null>(null);
   const [error, setError] = useState<Error | null>(null);
   const running = useRef<AbortController | null>(null);
+  const [otherScene, setOtherScene] = useState(""); // why the expert's session cannot be compared with
 
+  useEffect(() => {
+    let isWanted = true;
+    setOtherScene(""), setComparison(null);
+    if (expert && ended.path)
+      connection.call<Comparable>("session.comparable", { expert, trainee: ended.path })
+        .then(({ text }) => isWanted && setOtherScene(text), (failure) => isWanted && setError(failure));
+    return () => void (isWanted = false);
+  }, [expert, ended.path]);
+  const isCompared = expert !== "" && otherScene === "";
   const others = listing.sessions.filter((session) => session.path !== ended.path);
   const compare = async () => {
     const progress = (done: number, total: number) => setProgress([done, total]);
@@ -394,7 +408,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
     try {
       setVerdict(await connection.call("session.verify", { path: ended.path }, { progress, signal }));
       progress(0, 1);
-      if (expert) setComparison(await connection.call<ComparisonResult>("session.compare", { expert, trainee: ended.path }, { progress, signal }));
+      if (isCompared) setComparison(await connection.call<ComparisonResult>("session.compare", { expert, trainee: ended.path }, { progress, signal }));
     } catch (failure) {
       setError(failure as Error);
     }
@@ -402,10 +416,21 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
   };
   return (
     <>
+      {ended.errors.map((problem, i) => <p key={i} class="warning" role="alert">{problemText(problem)}</p>)}
+      {ended.fault && <p class="warning">{ended.fault}</p>}
+      {ended.refused && <p class="warning">The simulation was refused; what came before is saved.</p>}
+      {ended.path && (
+        <Section title="Verify and compare">
+          <ExpertChoice listing={others} expert={expert} onExpert={onExpert} use="to compare with" />
+          {otherScene && <p class="warning" role="alert">{otherScene}. They cannot be compared.</p>}
+          {progress ? <Working what={verdict ? "comparing" : "verifying"} done={progress[0]} total={progress[1]} onCancel={() => running.current?.abort()} />
+            : <button type="button" class="main" onClick={() => void compare()}>{isCompared ? "Verify and compare" : "Verify"}</button>}
+          {verdict && <p class={verdict.same ? "good" : "warning"} role="status">{verdict.text}</p>}
+          <Problems error={error} />
+        </Section>
+      )}
+      {comparison && <Outcome comparison={comparison} onMoment={(besideTime) => onReview({ session: expert, beside: ended.path, besideTime, comparison })} />}
       <Section title="This session">
-        {ended.errors.map((problem, i) => <p key={i} class="warning" role="alert">{problemText(problem)}</p>)}
-        {ended.fault && <p class="warning">{ended.fault}</p>}
-        {ended.refused && <p class="warning">The simulation was refused; what came before is saved.</p>}
         {ended.ticks !== undefined && (
           <Readings rows={[
             ["recorded as", ended.path || "not recorded"],
@@ -413,7 +438,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
             ["largest force", newtons(ended.max_force_n ?? 0)],
             ["largest depth", millimetres(ended.max_depth_m ?? 0, 2)],
             ["severed", `${ended.severed} elements`],
-            ["late ticks", String(ended.late_ticks)],
+            ["late steps", String(ended.late_ticks)],
             ["behind the clock", behind(ended.slip_s ?? 0, ended.slip_max_s ?? 0)],
             ...tickRows(ended.tick_time_p50_s ?? 0, ended.tick_time_p99_s ?? 0, ended.tick_s ?? 1e-3),
             ["half of the poses", underMs(ended.pose_wait_p50_s ?? 0, 1), kPoseWait],
@@ -425,18 +450,13 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
         {onAuthor && <button type="button" onClick={onAuthor}>Back to Author</button>}
         {ended.path && <button type="button" onClick={() => onReview({ session: ended.path, time: 0 })}>Open in Review</button>}
       </Section>
+      {comparison && <Measures comparison={comparison} />}
       {ended.path && (
-        <Section title="Verify and compare">
-          <ExpertChoice listing={others} expert={expert} onExpert={onExpert} use="to compare with" />
-          {progress ? <Working what={verdict ? "comparing" : "verifying"} done={progress[0]} total={progress[1]} onCancel={() => running.current?.abort()} />
-            : <button type="button" class="main" onClick={() => void compare()}>{expert ? "Verify and compare" : "Verify"}</button>}
-          {verdict && <p class={verdict.same ? "good" : "warning"} role="status">{verdict.text}</p>}
-          <Problems error={error} />
+        <Section title="The same in a terminal">
           <ShownCommand text={command("verify", ended.path)} />
-          {expert && <ShownCommand text={command("compare", expert, ended.path, "-o", "report")} />}
+          {isCompared && <ShownCommand text={command("compare", expert, ended.path, "-o", "report")} />}
         </Section>
       )}
-      {comparison && <Result comparison={comparison} onMoment={(besideTime) => onReview({ session: expert, beside: ended.path, besideTime, comparison })} />}
     </>
   );
 }

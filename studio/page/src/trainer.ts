@@ -55,6 +55,7 @@ export class Trainer {
   private readonly hands = [makeHand(), makeHand()];
   private readonly box = new three.Box3();
   private motion: Motion | null = null;
+  private sceneKey = ""; // of the scene in which the session runs
   private reached = 0; // pose of the expert's motion
   private timer: ReturnType<typeof setInterval> | null = null;
   private sentAt = 0;
@@ -120,7 +121,7 @@ export class Trainer {
     this.clear();
     const begun = await this.connection.call<BegunTraining>("train.begin",
       { scene, text, output, device, stage: kTrainStage, most_speed_m_per_s: kGuardSpeed }, { signal });
-    this.awaited = begun.awaited, this.isHeld = false, this.hasBegun = begun.awaited !== "";
+    this.awaited = begun.awaited, this.isHeld = false, this.hasBegun = begun.awaited !== "", this.sceneKey = begun.scene_key;
     // A hand that is not led here leaves the mouse free to look around.
     const { controls } = this.viewer;
     controls.enableZoom = this.awaited !== "";
@@ -157,7 +158,7 @@ export class Trainer {
     this.motion = motion;
     this.reached = 0;
     this.ghostAway = null;
-    if (!motion) this.scene?.setGhost(null);
+    if (!motion) this.scene?.setGhost(null), this.viewer.draw();
   }
 
   setTool(tool: number): void {
@@ -354,6 +355,11 @@ export class Trainer {
     else if (message.kind === "waiting") scene.wait(message), this.viewer.draw();
   }
 
+  /** Whether the expert's session is of another scene, where its ghost would lead through other tissue. */
+  get isExpertOfOtherScene(): boolean {
+    return this.motion !== null && this.scene !== null && this.motion.scene_key !== this.sceneKey;
+  }
+
   /** The expert's pose a little ahead of the place on the path that the tool has reached; it never goes back. */
   private expertNear(tool: Vector): number[] | null {
     const { poses, interval_s } = this.motion!;
@@ -367,7 +373,7 @@ export class Trainer {
   }
 
   private showGhost(frame: Frame): void {
-    if (this.motion && this.scene) {
+    if (this.motion && this.scene && !this.isExpertOfOtherScene) {
       const pose = this.expertNear(frame.position);
       this.scene.setGhost(pose);
       this.ghostAway = pose && pose[0] >= 0 ? distance(pose, frame.position) : null;

@@ -107,6 +107,12 @@ TEST_F(WoundCamera, APlaceAndWhatItLooksAtAreACamera) {
   EXPECT_LT(norm(camera.eye - Vec3{0.01, -0.3, 0.2}) + norm(camera.target - Vec3{0, 0.0005, 0.02}), 1e-12);
   EXPECT_EQ(camera.up, render::up_of(*view_.model));
   EXPECT_EQ(look("10,-300,200:0,0,20:1,0,0.5", nullptr).draw.camera.up, (Vec3{1, 0, 0.5}));
+  // A field of view stands at the end; without one it is the usual one.
+  EXPECT_EQ(camera.fov_deg, render::Camera{}.fov_deg);
+  EXPECT_EQ(look("10,-300,200:0,0,20:24.5", nullptr).draw.camera.fov_deg, 24.5);
+  EXPECT_EQ(look("10,-300,200:0,0,20:24.5", nullptr).draw.camera.up, camera.up);
+  EXPECT_EQ(look("10,-300,200:0,0,20:1,0,0.5:60", nullptr).draw.camera.fov_deg, 60);
+  EXPECT_EQ(look("10,-300,200:0,0,20:1,0,0.5:60", nullptr).draw.camera.up, (Vec3{1, 0, 0.5}));
   // Straight from above it sees something too.
   const render::Camera above = look("0,0,400:0,0,20", nullptr).draw.camera;
   EXPECT_GT(norm(cross(above.up, above.target - above.eye)), 0.1);
@@ -129,7 +135,12 @@ TEST_F(WoundCamera, APlaceAndWhatItLooksAtAreACamera) {
                                    {"1,2,inf:4,5,6", "has 'inf', no number"},
                                    {"1,2,:4,5,6", "has '', no number"},
                                    {"1,2,3:4,5,6:0,0,0", "the upward direction is 0"},
-                                   {"1,2,3:4,5,6:7,8,9:1", "4 places"}}) {
+                                   {"1,2,3:4,5,6:7,8,9:1,2,3", "4 places"},
+                                   {"1,2,3:4,5,6:7,8,9:1,2,3:40", "4 places"},
+                                   {"1,2,3:4,5,6:0", "field of view '0' must be 1 to 170"},
+                                   {"1,2,3:4,5,6:7,8,9:180", "field of view '180' must be"},
+                                   {"1,2,3:4,5,6:wide", "field of view 'wide' must be"},
+                                   {"1,2,3:40", "what it looks at '40' has 1 number"}}) {
     request.camera = wrong;
     const auto found = views::find_look(request, scene_, view_, kAspect);
     ASSERT_FALSE(found) << wrong;

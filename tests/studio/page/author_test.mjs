@@ -235,8 +235,8 @@ step("the slider fills again: spheres, time per tick, scatter", async () => {
   for (let i = 0; i < 12; ++i) await page.keyboard.press("ArrowLeft");
   await settled();
   await button("spheres").click();
-  await page.waitForFunction(() => / ms$/.test([...document.querySelectorAll("#panel .readings div")].find((d) => d.textContent.startsWith("time per tick"))?.lastChild.textContent ?? ""));
-  const spheres = await reading(page, "spheres"), time = await reading(page, "time per tick");
+  await page.waitForFunction(() => / ms it has$/.test([...document.querySelectorAll("#panel .readings div")].find((d) => d.textContent.startsWith("a step takes"))?.lastChild.textContent ?? ""));
+  const spheres = await reading(page, "spheres"), time = await reading(page, "a step takes");
   assert.ok(spheres > before, `${before} to ${spheres}`);
   assert.ok(time > 0);
   const layers = await page.locator("#panel .layers .number").allInnerTexts();

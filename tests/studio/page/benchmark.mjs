@@ -75,7 +75,7 @@ async function lead(scene) {
   const row = (name) => page.locator(`.readings div:has(dt:text-is("${name}")) dd`).innerText();
   console.log(`${scene}: ${(pictures / kSeconds).toFixed(1)} pictures a second, ${((1e3 * time) / pictures).toFixed(2)} ms of the main thread each; `
     + `pose to tick: half ${await row("half of the poses")}, 99 of 100 ${await row("99 of 100 poses")}, ${await row("within 5 ms")} within 5 ms; `
-    + `tick to picture p50, p95 ${(await fromTicks()).join(", ")} ms; ${await row("late ticks")} late ticks`);
+    + `tick to picture p50, p95 ${(await fromTicks()).join(", ")} ms; ${await row("late steps")} late steps`);
   await page.click("button:has-text('Train again')");
 }
 

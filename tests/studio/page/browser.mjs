@@ -240,6 +240,22 @@ export async function picture(page, name) {
   await page.screenshot({ path: join(pictures, `${name}.png`) });
 }
 
+/** What of a comparison is seen in a panel that nobody has scrolled: the first advice, so many worst moments, and whether measures follow. */
+export function seenFirst(page, panel) {
+  return page.locator(panel).evaluate((holder) => {
+    const box = holder.getBoundingClientRect();
+    const isSeen = (element) => {
+      const { top, bottom } = element.getBoundingClientRect();
+      return top >= box.top - 1 && bottom <= Math.min(box.bottom, innerHeight) + 1;
+    };
+    const moments = [...holder.querySelectorAll(".jumps button")];
+    return {
+      scrolled: holder.scrollTop, advice: isSeen(holder.querySelector(".advice li")), moments: moments.filter(isSeen).length, of: moments.length,
+      measuresAfter: holder.querySelector("table").getBoundingClientRect().top >= moments.at(-1).getBoundingClientRect().bottom,
+    };
+  });
+}
+
 /** How far the page is wider than its window [px]. */
 export function overflow(page) {
   return page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);

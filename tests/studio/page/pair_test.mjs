@@ -3,9 +3,9 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
-import { ctpm, ctpmBeside, leave, makeFolder, openStudio, outOfReach, picture, seriousFindings, step } from "./browser.mjs";
+import { ctpm, ctpmBeside, leave, makeFolder, openStudio, outOfReach, picture, seenFirst, seriousFindings, step } from "./browser.mjs";
 
-const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm";
+const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm", kOther = "liver-press-expert.ctpm";
 let folder, studio, page, expert, clumsy;
 let path, command; // moments of both along the path, as the page got them, and the command that compares
 
@@ -15,7 +15,7 @@ function firstOf(info, kind) {
 }
 
 before(async () => {
-  folder = makeFolder(kExpert, kClumsy);
+  folder = makeFolder(kExpert, kClumsy, kOther);
   [expert, clumsy] = [kExpert, kClumsy].map((name) => JSON.parse(ctpm(folder, "info", name, "--json").out));
   studio = await openStudio(folder);
   page = studio.page;
@@ -32,6 +32,43 @@ const clock = async () => Number.parseFloat(await page.locator(".clock").innerTe
 const ahead = async () => Number(await page.locator("#panel input[type=number]").inputValue());
 const offsetAt = (kind) => Number((firstOf(clumsy, kind) - firstOf(expert, kind)).toFixed(3));
 
+step("of sessions of two scenes it is said at once that they cannot be compared", async () => {
+  await page.click(".list button:has-text('kidney-cut-expert')");
+  await page.waitForSelector(".uplot");
+  await page.click("#tab-compare");
+  await page.locator("#panel select").selectOption(kOther);
+  const notice = page.locator(".other-scene"), difference = page.locator(".plots div[data-title='difference of force [N]']");
+  const compare = page.locator("#panel button:text-is('Compare')"), path = page.locator("#panel button:text-is('path')");
+  await notice.waitFor();
+  assert.match(await notice.innerText(), /cannot be compared.*liver-press-expert\.ctpm is of another scene.*liver instead of kidney/s);
+  await page.waitForFunction(() => document.querySelector(".plots div[data-title='force [N]']")?.dataset.at.includes(" · ")); // both have curves
+  assert.equal(await difference.count(), 0);
+  assert.ok((await compare.isDisabled()) && (await path.isDisabled()));
+  assert.deepEqual(await seriousFindings(page), []);
+  await studio.quiet(1000);
+  await picture(page, "review-other-scene");
+  // Both organs are in the picture, although one is larger: none of its edges has tissue.
+  const [inAll, atEdges] = await page.evaluate(async (encoded) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(encoded), (c) => c.charCodeAt(0))])), { width, height } = bitmap;
+    const context = new OffscreenCanvas(width, height).getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, width, height);
+    let all = 0, edges = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      if (data[i] < 60 || data[i] < 1.8 * data[i + 1] || data[i] < 1.8 * data[i + 2]) continue;
+      const x = (i / 4) % width, y = Math.floor(i / 4 / width), middle = Math.abs(x - width / 2);
+      ++all, edges += x < 5 || x > width - 6 || y > height - 6 || middle < 3;
+    }
+    return [all, edges];
+  }, (await page.locator(".view > canvas").screenshot()).toString("base64"));
+  assert.ok(inAll > 3000 && atEdges === 0, `${atEdges} of ${inAll} pixels of tissue are at an edge`);
+  await page.locator("#panel select").selectOption(kClumsy);
+  await difference.waitFor();
+  assert.equal(await notice.count(), 0);
+  assert.ok((await compare.isEnabled()) && (await path.isEnabled()));
+  await page.locator("#panel select").selectOption("");
+});
+
 step("from a pair of sessions to a video of its worst moment", async () => {
   await page.click(".list button:has-text('kidney-cut-expert')");
   await page.waitForSelector(".uplot");
@@ -41,10 +78,11 @@ step("from a pair of sessions to a video of its worst moment", async () => {
   await page.waitForSelector(".captions .second");
   await page.click("#panel button.main");
   await page.waitForSelector("#panel table");
-  await page.waitForFunction(() => { // they are scrolled to
-    const { bottom } = document.querySelector("#panel .jumps").getBoundingClientRect();
-    return bottom <= document.querySelector("aside").getBoundingClientRect().bottom + 1;
-  });
+  await page.waitForFunction(() => document.querySelector("#panel").scrollTop === 0);
+  const seen = await seenFirst(page, "#panel");
+  console.log(`of the comparison is seen without scrolling: ${JSON.stringify(seen)}`);
+  assert.ok(seen.advice && seen.moments >= Math.min(3, seen.of) && seen.measuresAfter, JSON.stringify(seen));
+  await picture(page, "review-compared");
   const worst = page.locator("#panel .jumps button").first(), when = Number.parseFloat(await worst.innerText());
   await worst.click();
   await page.waitForFunction((shown) => document.querySelector(".captions .second").textContent.includes(shown), ` ${when.toFixed(2)}`);
@@ -89,6 +127,55 @@ step("two sessions beside each other, compared", async () => {
   assert.ok(printed.includes(worst.replace(/^[\d.]+ s\s*/, "").split(":")[0]));
   assert.deepEqual(await seriousFindings(page), []);
   await picture(page, "review-compare");
+});
+
+step("what chooses a panel stays while it is scrolled", async () => {
+  const tabs = page.locator(".tabs"), before = await tabs.boundingBox();
+  const far = await page.locator("#panel").evaluate((panel) => {
+    panel.scrollTop = panel.scrollHeight;
+    return panel.scrollTop;
+  });
+  assert.ok(far > 200, `it is scrolled by ${far} px`);
+  assert.deepEqual(await tabs.boundingBox(), before);
+  assert.ok(await page.locator("#tab-moment").evaluate((tab) => {
+    const { x, y, width, height } = tab.getBoundingClientRect();
+    return document.elementFromPoint(x + width / 2, y + height / 2) === tab;
+  }), "nothing covers them");
+  await page.locator("#panel").evaluate((panel) => void (panel.scrollTop = 0));
+});
+
+step("each session has its own clock and its own axis, below each other where they belong together", async () => {
+  const axis = (whose) => page.locator(`.axis.of-${whose} .times span`).evaluateAll((all) => all.map((mark) => [Number.parseFloat(mark.textContent), Number(mark.style.getPropertyValue("--at"))]));
+  const clocks = () => page.locator(".clock, .clock-beside").allInnerTexts();
+  for (const [button, kind] of [["first contact", "contact begins"], ["first cut", "cut"]]) {
+    await page.click(`#panel button:text-is('${button}')`);
+    const offset = offsetAt(kind), [from, to] = [Math.min(0, -offset), Math.max(expert.duration_s, clumsy.duration_s - offset)];
+    assert.equal(await page.locator(".aligned").innerText(), `aligned at the ${button}`);
+    for (const [whose, duration, ahead] of [["first", expert.duration_s, 0], ["second", clumsy.duration_s, offset]]) {
+      const marks = await axis(whose);
+      assert.ok(marks.length >= 3, `${marks}`);
+      for (const [time, at] of marks) {
+        assert.ok(time >= 0 && time <= duration, `${time} s of ${duration} s`);
+        assert.ok(Math.abs(at - (time - ahead - from) / (to - from)) < 1e-3, `${whose}: ${time} s at ${at}`);
+      }
+    }
+    // Where the span begins one of them has not begun yet, and its clock says so.
+    await page.locator(".view > canvas").focus();
+    await page.keyboard.press("Home");
+    await page.waitForFunction((from) => Math.abs(Number.parseFloat(document.querySelector(".clock").textContent) - from) < 2e-3, from);
+    const [own, other] = await clocks();
+    assert.ok(Math.abs(Number.parseFloat(other) - from - offset) < 2e-3, `${own} and ${other}`);
+    if (from < -2e-3) assert.match(own, /before it begins/);
+    else if (from + offset < -2e-3) assert.match(other, /before it begins/);
+    await page.keyboard.press("End");
+    const [ownEnd, otherEnd] = await page.waitForFunction((to) => {
+      const texts = [...document.querySelectorAll(".clock, .clock-beside")].map((clock) => clock.innerText);
+      return Math.abs(Number.parseFloat(texts[0]) - to) < 2e-3 && texts;
+    }, to).then((handle) => handle.jsonValue());
+    assert.match(to > expert.duration_s + 2e-3 ? ownEnd : otherEnd, /after its end|of \d/);
+    if (to > expert.duration_s + 2e-3) assert.match(ownEnd, /after its end/);
+  }
+  await picture(page, "review-clocks");
 });
 
 step("along the path both tools are at the same place of it, and by hand as far apart in time as one says", async () => {
@@ -148,6 +235,57 @@ step("it is said whose session is whose, and they can be swapped at the same mom
   assert.deepEqual(await times(), before);
 });
 
+step("a link keeps how the pair is seen: view, colours, cutaway, camera and what brings both together", async () => {
+  const choose = (label, value) => page.locator(`.look-bar label:has-text("${label}") select`).selectOption(value);
+  const looks = () => page.locator(".look-bar select").evaluateAll((all) => all.map((select) => select.selectedOptions[0].textContent));
+  const drawn = () => page.evaluate(() => [...document.querySelectorAll(".drawings canvas")].map((canvas) => (canvas.hidden ? "" : canvas.toDataURL())));
+  const opened = async (link) => {
+    await page.goto("about:blank");
+    await page.goto(link);
+    await page.waitForSelector(".captions .second");
+  };
+  const copied = async () => {
+    await page.click("#tab-notes");
+    await page.click("#panel button:has-text('Copy the link')");
+    return page.locator("#panel .hint code").innerText();
+  };
+  await page.click("#panel button:has-text('first cut')");
+  await choose("view", "elements force");
+  await choose("cutaway", "y");
+  await page.locator(".view > canvas").focus();
+  for (let i = 0; i < 3; ++i) await page.keyboard.press("d");
+  await page.waitForFunction(() => [...document.querySelectorAll(".drawings canvas")].every((canvas) => !canvas.hidden));
+  await studio.quiet(1000);
+  const before = { looks: await looks(), drawn: await drawn(), times: await page.locator(".captions").innerText() };
+  assert.deepEqual(before.looks, ["elements by force", "across y", "as turned"]);
+  const link = await copied();
+  await picture(page, "review-link-before");
+  await opened(link);
+  assert.deepEqual(await looks(), before.looks);
+  await page.waitForFunction((drawn) => [...document.querySelectorAll(".drawings canvas")].every((canvas, i) => !canvas.hidden && canvas.toDataURL() === drawn[i]), before.drawn);
+  assert.equal(await page.locator(".captions").innerText(), before.times);
+  await picture(page, "review-link-after");
+  await page.click("#tab-compare");
+  await page.waitForSelector("#panel button[aria-pressed=true]:text-is('first cut')");
+  assert.equal(await ahead(), offsetAt("cut"));
+  // Along the path, for which both are compared again.
+  await page.click("#panel button:text-is('path')");
+  await page.waitForSelector("#panel button[aria-pressed=true]:text-is('path')");
+  await page.locator(".scrub").evaluate((slider) => {
+    slider.value = "2.4";
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+  });
+  await page.waitForFunction(() => document.querySelector(".clock").textContent.startsWith("2.400"));
+  const along = await page.locator(".captions").innerText();
+  await opened(await copied());
+  await page.waitForSelector("#panel button[aria-pressed=true]:text-is('path')");
+  assert.equal(await page.locator(".captions").innerText(), along);
+  await choose("view", "surface");
+  await choose("cutaway", "");
+  await choose("camera", "");
+  await page.waitForFunction(() => [...document.querySelectorAll(".drawings canvas")].every((canvas) => canvas.hidden));
+});
+
 step("notes stay, and a link leads to the moment", async () => {
   const session = readFileSync(join(folder, kExpert));
   await page.click("#panel button:has-text('first contact')");
@@ -201,6 +339,11 @@ step("an export is the one that the shown command makes, and can be cancelled", 
   await page.waitForSelector("#panel button[aria-pressed=true]:text-is('first contact')");
   await page.click("#tab-export");
   assert.match(await page.locator("#panel .command code").innerText(), /--align contact/);
+  // It is seen as it is here, unless the command is to choose.
+  assert.match(await page.locator("#panel .command code").innerText(), / --camera [-\d.]+,[-\d.]+,[-\d.]+:[-\d.]+,[-\d.]+,[-\d.]+(:| |$)/);
+  await choose("camera", "");
+  assert.doesNotMatch(await page.locator("#panel .command code").innerText(), /--camera/);
+  await choose("camera", "seen");
   assert.doesNotMatch(await page.locator("#panel .command code").innerText(), /--(overlay|slow-at|fps|size|speed|from-s|to-s)/);
   // Aligned by hand, it says by how much.
   await page.click("#tab-compare");

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
-import { ctpm, ctpmBeside, leave, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings, step } from "./browser.mjs";
+import { ctpm, ctpmBeside, leave, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings, step, until } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm";
 let folder, studio, page, expert;
@@ -56,7 +56,7 @@ step("a session opens, and any moment of it is a press away", async () => {
   assert.ok((await reading(page, "severed")) > 20);
   assert.ok(!start.equals(await drawn()));
   // The numbers of this moment are those of the command.
-  const tick = await reading(page, "tick");
+  const tick = await reading(page, "step");
   assert.equal((await command).code, 0);
   const row = readFileSync(join(folder, "replay.csv"), "utf8").split("\n")[tick].split(",");
   assert.equal(row[0], String(tick - 1));
@@ -176,6 +176,26 @@ step("scrubbing", async () => {
   assert.ok((await page.evaluate(() => globalThis.compiled)) <= 2, "materials are not compiled again for each cut");
 });
 
+/** How far the picture that the shown command makes of 2.6 s is from the page's drawing: at most, and the share of colours that differ by
+    more than can be told. */
+async function filmAndPage(shown, still) {
+  const size = await page.evaluate(() => [document.querySelector(".drawings canvas").width, document.querySelector(".drawings canvas").height]);
+  const made = await ctpmBeside(folder, ...(await shown()).split(" ").slice(1).map((word) => (word.endsWith(".mp4") ? still : word)),
+    "--from-s", "2.599", "--to-s", "2.6", "--overlay", "none", "--size", size.join("x"));
+  assert.equal(made.code, 0, made.err);
+  const last = readdirSync(join(folder, still)).filter((name) => name.endsWith(".png")).sort().at(-1);
+  const picture = readFileSync(join(folder, still, last)).toString("base64");
+  const apart = () => page.evaluate(async (bytes) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))])), canvas = document.querySelector(".drawings canvas");
+    const other = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+    other.drawImage(bitmap, 0, 0);
+    const a = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data, b = other.getImageData(0, 0, canvas.width, canvas.height).data;
+    const differences = a.map((x, i) => Math.abs(x - b[i]));
+    return { most: differences.reduce((most, x) => Math.max(most, x), 0), share: differences.filter((x) => x > 24).length / differences.length };
+  }, picture);
+  return { ...(await until(apart, ({ most }) => most === 0, 5)), size }; // the page's newest drawing may still be on its way
+}
+
 step("views, cutaway and cameras are those of export", async () => {
   const choose = (label, value) => page.locator(`.look-bar label:has-text("${label}") select`).selectOption(value);
   const drawing = () => page.waitForSelector(".drawings canvas:not([hidden])");
@@ -184,6 +204,10 @@ step("views, cutaway and cameras are those of export", async () => {
     slider.value = "2.6";
     slider.dispatchEvent(new Event("input", { bubbles: true }));
   });
+  await page.click("#tab-export");
+  await choose("camera", ""); // keys have turned it
+  await studio.quiet(1000);
+  const [, firstCamera] = /--camera (\S+)/.exec(await page.locator("#panel .command code").innerText());
   await choose("view", "spheres");
   await drawing();
   const seen = new Set([await pixels()]);
@@ -222,7 +246,10 @@ step("views, cutaway and cameras are those of export", async () => {
     slider.dispatchEvent(new Event("input", { bubbles: true }));
   });
   await changed("place of the cutaway");
-  assert.match(await shown(), /--cutaway y=-8$/);
+  assert.match(await shown(), /--camera [-\d.]+,.* --cutaway y=-8$/);
+  // The camera that the program chose for the page is the film's too.
+  const apart = await filmAndPage(shown, "chosen/");
+  assert.ok(apart.share < 2e-3, `the program's camera: ${JSON.stringify(apart)}`);
   const view = await page.locator(".view > canvas").boundingBox();
   await page.mouse.move(view.x + 200, view.y + 150);
   await page.mouse.down();
@@ -244,20 +271,8 @@ step("views, cutaway and cameras are those of export", async () => {
   await changed("elements");
   await picture(page, "review-turned");
   // The command that it shows sees the same.
-  const size = await page.evaluate(() => [document.querySelector(".drawings canvas").width, document.querySelector(".drawings canvas").height]);
-  const still = "still/";
-  const made = await ctpmBeside(folder, ...(await shown()).split(" ").slice(1).map((word) => (word.endsWith(".mp4") ? still : word)),
-    "--from-s", "2.599", "--to-s", "2.6", "--overlay", "none", "--size", size.join("x"));
-  assert.equal(made.code, 0, made.err);
-  const last = readdirSync(join(folder, still)).filter((name) => name.endsWith(".png")).sort().at(-1);
-  const difference = await page.evaluate(async (bytes) => {
-    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))])), canvas = document.querySelector(".drawings canvas");
-    const other = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
-    other.drawImage(bitmap, 0, 0);
-    const a = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data, b = other.getImageData(0, 0, canvas.width, canvas.height).data;
-    return a.reduce((most, x, i) => Math.max(most, Math.abs(x - b[i])), 0);
-  }, readFileSync(join(folder, still, last)).toString("base64"));
-  assert.equal(difference, 0, "the film's picture is the page's");
+  const same = await filmAndPage(shown, "still/"), { size } = same;
+  assert.equal(same.most, 0, "the film's picture is the page's");
   // Its size is that of its place.
   await page.setViewportSize({ width: 1500, height: 900 });
   await page.waitForFunction((before) => {
@@ -265,9 +280,11 @@ step("views, cutaway and cameras are those of export", async () => {
     return canvas.width !== before && Math.abs(canvas.width - place.clientWidth) <= 1 && Math.abs(canvas.height - place.clientHeight) <= 1;
   }, size[0]);
   await page.setViewportSize({ width: 1280, height: 720 });
+  // Back to how it was seen at first, chosen faster than it is drawn: the program's camera, and the page's own picture.
   await choose("view", "surface");
   await choose("camera", "");
   await choose("cutaway", "");
+  await page.waitForFunction((first) => document.querySelector("#panel .command code").textContent.includes(`--camera ${first}`), firstCamera);
   await page.waitForSelector(".drawings canvas[hidden]", { state: "attached" });
   await page.click("#tab-moment");
 });
@@ -286,7 +303,9 @@ step("it fits a desk, a large screen and a tablet", async () => {
     return main.scrollTop > 0 ? main.getBoundingClientRect().top : null;
   });
   assert.ok(top !== null, "there is something to scroll");
-  assert.equal((await page.locator(".view").boundingBox()).y, top);
+  const view = await page.locator(".view").boundingBox(), tabs = await page.locator(".tabs").boundingBox();
+  assert.equal(view.y, top);
+  assert.ok(Math.abs(tabs.y - view.y - view.height) < 2, `what chooses a panel stays below the picture: ${tabs.y} and ${view.y + view.height}`);
   await picture(page, "review-820x1180-scrolled");
   await page.locator("main").evaluate((main) => void (main.scrollTop = 0));
   assert.deepEqual(await seriousFindings(page), []);

@@ -71,6 +71,8 @@ TEST(Protocol, NoCallReachesAFileOutsideOfTheFolder) {
       {"session.timeline", "path", ".ctpm", {{"points", 10}}},
       {"session.motion", "path", ".ctpm", {{"rate_hz", 10}}},
       {"session.verify", "path", ".ctpm", none},
+      {"session.comparable", "expert", ".ctpm", {{"trainee", "own.ctpm"}}},
+      {"session.comparable", "trainee", ".ctpm", {{"expert", "own.ctpm"}}},
       {"session.compare", "expert", ".ctpm", {{"trainee", "own.ctpm"}}},
       {"session.compare", "trainee", ".ctpm", {{"expert", "own.ctpm"}}},
       {"session.export", "path", ".ctpm", {{"output", "film.avi"}, {"to_s", 0.1}}},

@@ -1,0 +1,85 @@
+import { useEffect, useRef, useState } from "preact/hooks";
+import type { Connection } from "./connection";
+import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
+import type { Player } from "./player";
+import type { SessionEvent } from "./protocol";
+import { behind, command, millimetres, newtons, seconds, tickRows } from "./text";
+
+/** What happened in a session; late ticks are counted elsewhere. */
+export function shownEvents(events: SessionEvent[]): SessionEvent[] {
+  return events.filter((event) => event.kind !== "late tick");
+}
+
+export type ShownFrame = { force: number[]; depth: number; contacts: number; severed: number; isSame: boolean; isGlimpse: boolean; missed: number; tick: number; second: { force: number[]; depth: number } | null } | null;
+
+/** The moment that is shown, in numbers, and the session that it is of. */
+export function Moment({ connection, player, frame, other }: { connection: Connection; player: Player; frame: ShownFrame; other: ShownFrame }) {
+  const [verdict, setVerdict] = useState<{ same: boolean; text: string } | null>(null);
+  const [progress, setProgress] = useState<[number, number] | null>(null);
+  const [error, setError] = useState<Error | null>(null);
+  const running = useRef<AbortController | null>(null);
+  const { path, info } = player.tracks.get(0)!.session;
+  useEffect(() => setVerdict(null), [path]);
+
+  const verify = async () => {
+    setError(null);
+    setProgress([0, 1]);
+    running.current = new AbortController();
+    try {
+      setVerdict(await connection.call("session.verify", { path },
+        { progress: (done, total) => setProgress([done, total]), signal: running.current.signal }));
+    } catch (failure) {
+      setError(failure as Error);
+    }
+    setProgress(null);
+  };
+  const rows = (shown: ShownFrame): [string, string][] => shown ? [
+    ["force", newtons(Math.hypot(...shown.force))],
+    ["depth", millimetres(shown.depth, 2)],
+    ...(shown.second
+      ? ([["force, left", newtons(Math.hypot(...shown.second.force))], ["depth, left", millimetres(shown.second.depth, 2)]] as [string, string][])
+      : []),
+    ["touched", `${shown.contacts} points`],
+    ["severed", `${shown.severed} elements`],
+    ["replay", shown.isGlimpse ? "is computed…" : shown.isSame ? "as recorded" : "DIFFERS"],
+  ] : [];
+  return (
+    <>
+      <Section title={other ? "This moment, expert" : "This moment"}>
+        <Readings rows={[["step", String(frame?.tick ?? 0)], ...rows(frame),
+          ["picture after", player.pictureAfter === null ? "…" : `${player.pictureAfter.toFixed(0)} ms`],
+          ["replayed after", player.replayedAfter === null ? "…" : `${player.replayedAfter.toFixed(0)} ms`]]} />
+      </Section>
+      {other && <Section title="Trainee"><Readings rows={rows(other)} /></Section>}
+      <Section title="Events">
+        <ul class="jumps">
+          {shownEvents(info.events).map((event, i) => (
+            <li key={i}>
+              <button type="button" onClick={() => player.move(event.tick * info.tick_s)}>
+                <span class="number">{seconds(event.tick * info.tick_s)}</span> {event.text}
+              </button>
+            </li>
+          ))}
+        </ul>
+        {info.events.length === 0 && <p class="hint">Nothing was touched in this session.</p>}
+      </Section>
+      <Section title="Session">
+        <Readings rows={[
+          ["recorded", info.created_utc.replace("T", " ").replace("Z", " UTC") || "its time of day was taken out"],
+          ["tissue", `${info.spheres} spheres`],
+          ["largest force", newtons(info.max_force_n)],
+          ["largest depth", millimetres(info.max_depth_m, 2)],
+          ...tickRows(info.tick_time_p50_s, info.tick_time_p99_s, info.tick_s),
+          ["late steps", String(info.late_ticks)],
+          ["behind the clock", behind(info.slip_s, info.slip_max_s)],
+        ]} />
+        {[info.physics_remark, ...info.remarks].filter(Boolean).map((remark) => <p key={remark} class="warning">{remark}</p>)}
+        {progress ? <Working what="verifying" done={progress[0]} total={progress[1]} onCancel={() => running.current?.abort()} />
+          : <button type="button" onClick={() => void verify()}>Verify the replay</button>}
+        {verdict && <p class={verdict.same ? "good" : "warning"} role="status">{verdict.text}</p>}
+        <Problems error={error} />
+        <ShownCommand text={command("verify", path)} />
+      </Section>
+    </>
+  );
+}
