@@ -216,7 +216,7 @@ export function ImportForm({ connection, file, leftOut, open, onCancel, onDone }
       {progress ? <Working what={progress[0]} done={progress[1]} total={1} onCancel={() => stop.current.abort()} />
         : (
           <div class="buttons">
-            <button type="button" class="main" onClick={() => void start()}>Import</button>
+            <button type="button" class="main" disabled={!organ} onClick={() => void start()}>Import</button>
             <button type="button" onClick={onCancel}>Back</button>
           </div>
         )}
@@ -225,7 +225,7 @@ export function ImportForm({ connection, file, leftOut, open, onCancel, onDone }
         <button type="button" class="main" onClick={() => void start(String(refused))}>Close holes up to {refused} mm and import</button>
       )}
       {isAdded && <p class="hint">The command writes the organ into the file at once. Here it is added to the text, which you save, and {target} stays a scene of its own.</p>}
-      <ShownCommand text={command("import", file.name, ...names.flatMap((name) => ["--label", name]), "--organ", organ, ...(unit ? ["--unit", kUnits[unit]] : []),
+      <ShownCommand text={command("import", file.name, ...names.flatMap((name) => ["--label", name]), ...(organ ? ["--organ", organ] : []), ...(unit ? ["--unit", kUnits[unit]] : []),
         ...(radius ? ["--radius-mm", radius] : []), ...(hole ? ["--largest-hole-mm", hole] : []), ...(isAdded && open?.doc ? ["--into", open.doc.path, "--beside"] : ["-o", target]))} />
     </Section>
   );

@@ -30,6 +30,7 @@ step("a second mesh becomes an organ of the scene, which is moved by its handle"
   const mesh = readFileSync(join(paths.source, "scenes", "organs", "kidney.obj"));
   await page.setInputFiles(".pick input", { name: "other-kidney.obj", mimeType: "model/obj", buffer: mesh });
   await page.click("aside label:has-text('an organ of')");
+  await page.waitForSelector("aside .command code:has-text('--organ kidney')");
   const shown = await page.locator("aside .command code").innerText(), other = makeFolder();
   await button("Import", "aside").click();
   await page.waitForSelector("aside .good:has-text('spheres')");
