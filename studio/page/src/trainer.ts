@@ -378,7 +378,7 @@ export class Trainer {
       this.scene.setGhost(pose);
       this.ghostAway = pose && pose[0] >= 0 ? distance(pose, frame.position) : null;
     }
-    if (!this.hasBegun) this.showWaiting();
+    if (!this.hasBegun) this.scene?.showTools(this.hands.slice(0, this.handCount));
     this.onFrame();
   }
 }

@@ -144,7 +144,7 @@ export class Viewer {
   private drawMoving(): void {
     const began = performance.now();
     this.isWanted = false;
-    this.drawNow(false);
+    this.begin(false);
     this.awaitPicture(() => {
       const took = performance.now() - began;
       this.quality.add(took);
@@ -160,18 +160,23 @@ export class Viewer {
 
   /** The same picture, as fine as it can be. */
   private drawStill(): void {
-    this.drawNow(true);
+    this.begin(true);
     this.awaitPicture(() => {
       if (this.isWanted) this.drawNext();
     });
   }
 
+  private begin(isStill: boolean): void {
+    this.isBusy = true; // who asks for a picture while this one is made gets the next one
+    this.drawNow(isStill);
+  }
+
   private awaitPicture(done: () => void): void {
     const gl = this.renderer.getContext() as WebGL2RenderingContext;
     const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    this.isBusy = sync !== null;
     if (!sync) return;
     gl.flush();
-    this.isBusy = true;
     const look = () => {
       if (!gl.isContextLost() && gl.clientWaitSync(sync, 0, 0) === gl.TIMEOUT_EXPIRED) return void setTimeout(look, kLookAgain);
       gl.deleteSync(sync);

@@ -136,6 +136,22 @@ step("the wheel moves the tool away from the viewer, and the pointer slows as th
 });
 
 step("a session begins when the tool is taken up: what comes before is in no time of it", async () => {
+  // Pictures that are drawn at the same time would each show what is older.
+  await page.evaluate(() => {
+    const { fenceSync, deleteSync } = WebGL2RenderingContext.prototype;
+    globalThis.drawn = { now: 0, most: 0, all: 0 };
+    Object.assign(WebGL2RenderingContext.prototype, {
+      fenceSync(...of) {
+        const { drawn } = globalThis;
+        ++drawn.all, drawn.most = Math.max(drawn.most, ++drawn.now);
+        return fenceSync.apply(this, of);
+      },
+      deleteSync(sync) {
+        --globalThis.drawn.now;
+        return deleteSync.call(this, sync);
+      },
+    });
+  });
   await begin(page, "kidney", "late.ctpm");
   await page.waitForSelector(".take-up");
   const sent = studio.handsSent(), canvas = page.locator(".view > canvas"), box = await canvas.boundingBox();
@@ -162,6 +178,8 @@ step("a session begins when the tool is taken up: what comes before is in no tim
   const began = Date.now();
   await takeUp(page);
   await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 0.2);
+  await page.waitForFunction(() => globalThis.drawn.all > 20);
+  assert.equal(await page.evaluate(() => globalThis.drawn.most), 1, "one picture at a time");
   await end(page);
   const lasted = JSON.parse(ctpm(folder, "info", "late.ctpm", "--json").out).duration_s;
   assert.ok(lasted > 0.2 && lasted < (Date.now() - began) / 1e3, `${lasted} s`);
