@@ -35,8 +35,9 @@ reports::Table runs_table(const std::vector<StabilityRow>& rows) {
 reports::Table overview(const std::vector<StabilityRow>& rows) {
   reports::Table table;
   table.columns = {{"title", "case"}};
-  for (const std::optional<Integrator> integrator : kStabilityIntegrators)
-    table.columns.push_back({stepping::name_of(integrator), stepping::name_of(integrator), 4, !integrator});
+  if (!rows.empty())
+    for (const StabilityRun& run : rows[0].runs)
+      table.columns.push_back({stepping::name_of(run.asked), stepping::name_of(run.asked), 4, !run.asked});
   table.columns.push_back({"used", "auto takes"});
   table.columns.push_back({"reach", "furthest under auto [mm]", 3});
   table.columns.push_back({"expectation", "what must hold"});
@@ -110,9 +111,10 @@ void conclude(reports::Report& report, const std::vector<StabilityRow>& rows) {
   std::vector<std::string> points;
   if (!names.empty()) points.push_back("Missed under auto: " + names + ".");
   points.push_back("Must hold: every case under the integrator that auto takes.");
-  points.push_back("Only shown: integrators that are named. Of their runs " + std::to_string(met) + " hold, " +
-                   std::to_string(refused) + " are refused with the reason, " + std::to_string(missed) +
-                   " do not hold" + (missed > 0 ? " and are drawn below." : "."));
+  if (met + refused + missed > 0)
+    points.push_back("Only shown: integrators that are named. Of their runs " + std::to_string(met) + " hold, " +
+                     std::to_string(refused) + " are refused with the reason, " + std::to_string(missed) +
+                     " do not hold" + (missed > 0 ? " and are drawn below." : "."));
   const std::string count = std::to_string(rows.size());
   const std::string all = rows.size() == 1 ? "the one case" : "all " + count + " cases";
   report.conclude(

@@ -198,18 +198,18 @@ StabilityRun run_stability_case(const StabilityCase& what, std::optional<Integra
   return run;
 }
 
-std::vector<StabilityRow> run_stability(const std::vector<StabilityCase>& cases,
+std::vector<StabilityRow> run_stability(const std::vector<StabilityCase>& cases, std::size_t integrators,
                                         const std::function<void(std::int64_t done, std::int64_t total)>& progress) {
-  constexpr std::size_t kEach = std::size(kStabilityIntegrators);
   std::vector<StabilityRow> rows;
-  for (const StabilityCase& what : cases) rows.push_back({&what, std::vector<StabilityRun>(kEach)});
-  const std::size_t total = kEach * cases.size();
+  for (const StabilityCase& what : cases) rows.push_back({&what, std::vector<StabilityRun>(integrators)});
+  const std::size_t total = integrators * cases.size();
   std::atomic<std::size_t> next = 0;
   std::mutex mutex;
   std::int64_t done = 0;
   const auto work = [&] {
     for (std::size_t job = next++; job < total; job = next++) {
-      rows[job / kEach].runs[job % kEach] = run_stability_case(cases[job / kEach], kStabilityIntegrators[job % kEach]);
+      const std::size_t of = job / integrators, under = job % integrators;
+      rows[of].runs[under] = run_stability_case(cases[of], kStabilityIntegrators[under]);
       const std::lock_guard<std::mutex> lock(mutex);
       progress(++done, std::int64_t(total));
     }

@@ -76,7 +76,7 @@ struct StabilityRun {
 /// What ran and then failed is missed, also where the integrator had announced that it has no numerical damping.
 StabilityRun run_stability_case(const StabilityCase& what, std::optional<Integrator> integrator);
 
-/// The results of one case, in the order of kStabilityIntegrators.
+/// The results of one case, in the order of kStabilityIntegrators; of the first ones alone if only those were run.
 struct StabilityRow {
   const StabilityCase* what;
   std::vector<StabilityRun> runs;
@@ -85,8 +85,9 @@ struct StabilityRow {
 inline constexpr std::optional<Integrator> kStabilityIntegrators[] = {std::nullopt, Integrator::leapfrog,
                                                                       Integrator::backward_euler, Integrator::sdirk2};
 
-/// Runs all cases under all integrators, several at a time. `progress` is called from one thread at a time.
-std::vector<StabilityRow> run_stability(const std::vector<StabilityCase>& cases,
+/// Runs all cases, several at a time, under the first `integrators` of kStabilityIntegrators, at least 1. `progress` is
+/// called from one thread at a time.
+std::vector<StabilityRow> run_stability(const std::vector<StabilityCase>& cases, std::size_t integrators,
                                         const std::function<void(std::int64_t done, std::int64_t total)>& progress);
 
 /// Number of runs under the Model's own choice of integrator that missed.

@@ -170,7 +170,7 @@ TEST(Paper, ComparedModelsAreStaticallyAlike) {
   EXPECT_NEAR(static_depth({"", network::Structure::ctpm, false, ""}), springs, 0.03 * springs);
 }
 
-TEST(Paper, AfterACutDampedModelsStayUndampedMassSpringWandersAndOnlyATenseCapsuleOpensTheCut) {
+TEST(Paper, SlowAfterACutDampedModelsStayUndampedMassSpringWandersAndOnlyATenseCapsuleOpensTheCut) {
   const Result<paper::Experiment> experiment = paper::run_cut(kScenes, false);
   expect_met(experiment, 0);
   const std::vector<reports::Table>& tables = experiment->section.tables;

@@ -118,19 +118,44 @@ TEST_F(TrainingTest, TrianglesComeAtItsBeginningAndThenOnlyWhenACutChangedThem) 
   EXPECT_GT(resting, 10) << "a blade that rests cuts nothing";
 }
 
-/// The force in each tick of a session, from its first touch on [N].
-std::vector<double> forces_of(const std::string& session, const fs::path& folder) {
+/// A tick of a session: how high the tool is [mm], and the force on it [N].
+struct Felt {
+  double height, force;
+};
+
+/// The ticks of a session from its first touch on.
+std::vector<Felt> felt_in(const std::string& session, const fs::path& folder) {
   EXPECT_EQ(testing::run_ctpm({"replay", session, "--csv", session + ".csv"}, folder).code, 0);
   std::ifstream csv(folder / (session + ".csv"));
-  std::vector<double> forces;
+  std::vector<Felt> ticks;
   std::string row, field;
   for (std::getline(csv, row); std::getline(csv, row);) {
     std::istringstream fields(row);
-    for (int i = 0; i <= 14; ++i) std::getline(fields, field, ',');
-    const double force = std::atof(field.c_str());
-    if (force > 0.005 || !forces.empty()) forces.push_back(force);
+    Felt felt{};
+    for (int i = 0; i <= 14; ++i) {
+      std::getline(fields, field, ',');
+      if (i == 5) felt.height = std::atof(field.c_str());
+    }
+    felt.force = std::atof(field.c_str());
+    if (felt.force > 0.005 || !ticks.empty()) ticks.push_back(felt);
   }
-  return forces;
+  return ticks;
+}
+
+/// Root of the mean square of how far the forces of two sessions are apart on the way down, at equal heights of the
+/// tool: when poses arrive is the machine's affair.
+double apart_on_the_way(const std::vector<Felt>& one, const std::vector<Felt>& other) {
+  double squares = 0, lowest = INFINITY;
+  std::size_t at = 0, count = 0;
+  for (const Felt& felt : one) {
+    if (felt.height >= lowest) continue;
+    lowest = felt.height;
+    while (at < other.size() && other[at].height > lowest) ++at;
+    if (at == other.size()) break;
+    squares += (felt.force - other[at].force) * (felt.force - other[at].force), ++count;
+  }
+  EXPECT_GT(count, 100u);
+  return std::sqrt(squares / double(count));
 }
 
 TEST_F(TrainingTest, AHandOfThePageAndADeviceFeelTheSameOfTheSameMotion) {
@@ -172,24 +197,21 @@ TEST_F(TrainingTest, AHandOfThePageAndADeviceFeelTheSameOfTheSameMotion) {
       EXPECT_TRUE(device.send(testing::transform_bytes({0, 0, -1e3 * depth(time)}, 100 + time)));
     });
   }
-  const std::vector<double> page = forces_of("page.ctpm", folder_.path()),
-                            device = forces_of("device.ctpm", folder_.path());
-  const std::size_t ticks = std::min(page.size(), device.size());
-  ASSERT_GT(ticks, 700u);
-  const double most = *std::max_element(page.begin(), page.end());
-  double squares = 0, held_page = 0, held_device = 0;
+  const std::vector<Felt> page = felt_in("page.ctpm", folder_.path()), device = felt_in("device.ctpm", folder_.path());
   constexpr std::size_t kHeld = 100;  // ticks
-  for (std::size_t i = 0; i < ticks; ++i) {
-    squares += (page[i] - device[i]) * (page[i] - device[i]) / double(ticks);
-    if (i + kHeld >= ticks) held_page += page[i] / kHeld, held_device += device[i] / kHeld;
-  }
+  ASSERT_GT(std::min(page.size(), device.size()), 2 * kHeld);
+  double most = 0, held_page = 0, held_device = 0;
+  for (const Felt& felt : page) most = std::max(most, felt.force);
+  for (std::size_t i = 1; i <= kHeld; ++i)
+    held_page += page[page.size() - i].force / kHeld, held_device += device[device.size() - i].force / kHeld;
+  const double apart = apart_on_the_way(page, device);
   std::printf("at most %.3f N, held %.4f and %.4f N, apart by %.4f N (root of the mean square)\n", most, held_page,
-              held_device, std::sqrt(squares));
+              held_device, apart);
   EXPECT_GT(most, 0.2);
   constexpr double kAlike = 0.01;  // of the force that is held; the same spring holds both
   EXPECT_NEAR(held_page, held_device, kAlike * held_page);
-  constexpr double kOnTheWay = 0.05;  // of the largest: poses arrive at other ticks
-  EXPECT_LT(std::sqrt(squares), kOnTheWay * most);
+  constexpr double kOnTheWay = 0.1;  // of the largest: what comes late comes faster, and tissue is viscous
+  EXPECT_LT(apart, kOnTheWay * most);
 }
 
 }  // namespace

@@ -141,6 +141,18 @@ TEST(StabilityCommand, SpeaksOfOneCaseAsOne) {
   EXPECT_NE(slurp(folder.path() / "out/report.html").find("auto holds the one case."), std::string::npos);
 }
 
+TEST(StabilityCommand, RunsWhatAutoTakesAloneWhereThatIsAsked) {
+  const TemporaryFolder folder;
+  const ProgramOutcome outcome = run_ctpm(
+      {"stability", "-o", "out", "--quick", "--auto-only", "--case", "single", "--case", "chain"}, folder.path());
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("2 cases: auto holds 2 and fails 0"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("integrators that are named"), std::string::npos) << outcome.out;
+  const std::string csv = slurp(folder.path() / "out/results.csv"), page = slurp(folder.path() / "out/report.html");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3) << csv;
+  EXPECT_EQ(page.find("Only shown: integrators that are named"), std::string::npos);
+}
+
 TEST(StabilityCommand, NamesCasesThatDoNotExist) {
   const TemporaryFolder folder;
   const ProgramOutcome outcome =
