@@ -1,3 +1,4 @@
+import { useMemo } from "preact/hooks";
 import type { Player } from "./player";
 import { seconds } from "./text";
 
@@ -30,6 +31,11 @@ export function timesOf(player: Player, stage: number, from: number, to: number)
 
 /** Below the curves, the time of each session on its own clock, where it runs. */
 export function TimeAxes({ player, from, to }: { player: Player; from: number; to: number }) {
+  // They do not change with the moment.
+  return useMemo(() => axesOf(player, from, to), [player, from, to, player.besideAt(from), player.besideAt(to), player.aligned, player.tracks.get(0), player.tracks.get(1)]);
+}
+
+function axesOf(player: Player, from: number, to: number) {
   const isPair = player.tracks.has(1), digits = Math.max(0, -Math.floor(Math.log10(stepOf(to - from)) + 1e-9));
   const shareOf = (time: number) => Math.min(Math.max((time - from) / (to - from), 0), 1);
   if (to <= from) return null;
