@@ -239,7 +239,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
             <div id="panel" class="panel" role="tabpanel" aria-labelledby={`tab-${panel}`} tabIndex={0}>
               {panel === "place" && <Inspector scene={scene} item={item} viewer={desk!.viewer} onRemove={canRemove(item, items) ? remove : null} />}
               {panel === "filling" && <Filling connection={connection} scene={scene} chosen={organOf(item)} />}
-              {panel === "scene" && <>{imported && <ImportResult imported={imported} />}<About scene={scene} isImported={imported !== null} /></>}
+              {panel === "scene" && <>{imported && <ImportResult imported={imported} />}<About scene={scene} /></>}
             </div>
             <SceneEditor scene={scene} onSelect={select} />
           </>
@@ -348,7 +348,7 @@ function CopyForm({ doc, onClose, onCopied }: { doc: SceneDocument; onClose: () 
 }
 
 /** What the program says of the scene. */
-function About({ scene, isImported }: { scene: AuthorScene; isImported: boolean }) {
+function About({ scene }: { scene: AuthorScene }) {
   const { shown, doc } = scene;
   return (
     <>
@@ -365,7 +365,7 @@ function About({ scene, isImported }: { scene: AuthorScene; isImported: boolean 
       {listOf(doc!.lastValue, "organs").length > 1 && <Meeting scene={scene} />}
       {shown?.organs.map((organ, i) => organ.report && (
         <Section key={i} title={`${shown.view.organs[i].name}: its mesh`}>
-          {isImported && organ.findings.length === 0 ? <p class="hint">As the import wrote it: what it repaired is said above.</p> : <Findings findings={organ.findings} />}
+          {organ.findings.length === 0 ? <p class="hint">Nothing is left to repair in the file that the scene names.</p> : <Findings findings={organ.findings} />}
           <pre>{organ.report}</pre>
         </Section>
       ))}

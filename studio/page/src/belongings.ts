@@ -105,6 +105,7 @@ function sharedOf(scene: Json | undefined): Thing[] {
 /** The organ whose spheres are nearest to a place. `spheres`: of each organ where they are shown, at the poses `shown`, while
     the organs are at `poses`. -1: there is none. */
 function nearestOrgan(place: three.Vector3, spheres: OrganSpheres[], shown: OrganPose[], poses: OrganPose[]): number {
+  if (poses.length === 1) return 0;
   let nearest = -1, least = Infinity;
   spheres.forEach(({ centre, radius }, organ) => {
     if (!shown[organ] || !poses[organ]) return;

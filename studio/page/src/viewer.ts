@@ -166,8 +166,9 @@ export class Viewer {
     });
   }
 
+  /** Makes a picture. Who asks for one meanwhile gets the next one. */
   private begin(isStill: boolean): void {
-    this.isBusy = true; // who asks for a picture while this one is made gets the next one
+    this.isBusy = true;
     this.drawNow(isStill);
   }
 
