@@ -81,13 +81,17 @@ void Desk::end_training() {
   ended = std::exchange(training_, nullptr);
 }
 
+std::shared_ptr<Training> Desk::training() {
+  const std::lock_guard lock(mutex_);
+  return training_;
+}
+
+void Desk::ready(std::uint32_t number) {
+  if (const std::shared_ptr<Training> running = training()) running->ready(number);
+}
+
 void Desk::move(const HandMoves& moves, double sent_s) {
-  std::shared_ptr<Training> running;
-  {
-    const std::lock_guard lock(mutex_);
-    running = training_;
-  }
-  if (running) running->move(moves, sent_s);
+  if (const std::shared_ptr<Training> running = training()) running->move(moves, sent_s);
 }
 
 }  // namespace ctpm::server

@@ -48,6 +48,9 @@ class Desk {
   /// Ends it, if one runs, and waits until it is saved.
   void end_training();
 
+  /// The page soon draws the next picture of a running session; see PicturePace.
+  void ready(std::uint32_t number);
+
   /// Moves the hands of a running session; called from one thread.
   void move(const HandMoves& moves, double sent_s);
 
@@ -55,6 +58,7 @@ class Desk {
 
  private:
   std::shared_ptr<Stage> stage(std::uint32_t number);
+  std::shared_ptr<Training> training();
 
   std::shared_ptr<Outbox> outbox_;
   std::mutex mutex_;

@@ -16,7 +16,7 @@ struct LiveTick {
 };
 
 /// One slot between the thread of the ticks, which never waits, and one that makes pictures: a tick is copied only
-/// after the last one was taken.
+/// after the last one was taken or dropped.
 class NewestState {
  public:
   /// Called after each tick.
@@ -25,6 +25,9 @@ class NewestState {
     tick_.state = state, tick_.record = record, tick_.late_ticks = late_ticks, tick_.tick_p99 = tick_p99;
     is_full_.store(true, std::memory_order_release);
   }
+
+  /// Empties the slot, so that the next tick is in it.
+  void refresh() { is_full_.store(false, std::memory_order_release); }
 
   /// Gives `take` the tick in the slot, if there is one, and empties it.
   template <class Take>

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr auto kPictureInterval = std::chrono::microseconds(16667);
+constexpr auto kLookAgain = std::chrono::milliseconds(1);  // whether the next tick is done
 
 /// Button n is pressed while tool n is in the hand.
 std::vector<std::string> buttons_of(const Model& model) {
@@ -174,6 +174,7 @@ void Training::tick() {
                              start_->model.tick, 0));
   }
   has_ended_ = true;
+  pace_.ready();
 }
 
 void Training::show() {
@@ -181,18 +182,19 @@ void Training::show() {
   FrameFacts facts;
   facts.is_live = true;
   outbox_->show(maker.make(start_->initial_state, facts));
+  const auto make = [&](const LiveTick& tick) {
+    facts.tick = tick.state.tick, facts.force = tick.record.tool_force, facts.depth = tick.record.depth;
+    facts.contacts = tick.record.contacts, facts.tick_time = tick.record.tick_time;
+    facts.severed = severed_in(tick.state), facts.late_ticks = tick.late_ticks;
+    facts.tick_p99 = tick.tick_p99, facts.slip = tick.record.slip;
+    facts.hand = tick.record.inputs.position;
+    facts.second = {tick.record.second, tick.record.inputs.second.position};
+    outbox_->show(maker.make(tick.state, facts));
+  };
   while (!has_ended_) {
-    const auto next = std::chrono::steady_clock::now() + kPictureInterval;
-    newest_.take([&](const LiveTick& tick) {
-      facts.tick = tick.state.tick, facts.force = tick.record.tool_force, facts.depth = tick.record.depth;
-      facts.contacts = tick.record.contacts, facts.tick_time = tick.record.tick_time;
-      facts.severed = severed_in(tick.state), facts.late_ticks = tick.late_ticks;
-      facts.tick_p99 = tick.tick_p99, facts.slip = tick.record.slip;
-      facts.hand = tick.record.inputs.position;
-      facts.second = {tick.record.second, tick.record.inputs.second.position};
-      outbox_->show(maker.make(tick.state, facts));
-    });
-    std::this_thread::sleep_until(next);
+    pace_.wait();
+    newest_.refresh();
+    while (!newest_.take(make) && !has_ended_) std::this_thread::sleep_for(kLookAgain);
   }
 }
 

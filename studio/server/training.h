@@ -15,6 +15,7 @@
 #include "studio/server/newest_state.h"
 #include "studio/server/outbox.h"
 #include "studio/server/page_hand.h"
+#include "studio/server/picture_pace.h"
 
 namespace ctpm::server {
 
@@ -48,6 +49,11 @@ class Training {
       if (moves[i] && hands_[i] != nullptr) hands_[i]->move(*moves[i], sent_s);
   }
 
+  /// The page soon draws the next picture of that stage; see PicturePace.
+  void ready(std::uint32_t stage) {
+    if (stage == stage_) pace_.ready();
+  }
+
   /// Ends the session; the event "train_ended" follows.
   void end() { ends_ = true; }
 
@@ -69,6 +75,7 @@ class Training {
   std::vector<devices::DeviceSource*> followed_;  ///< of source_
   std::unique_ptr<sources::InputSource> source_;
   NewestState newest_;
+  PicturePace pace_;
   std::atomic<bool> ends_{false}, has_ended_{false};
   std::thread ticks_, pictures_;
 };

@@ -86,6 +86,9 @@ void WebClient::take(const std::string& text) {
     if (std::optional<Parameters> second = hand->object_if("second")) moves[1] = move_of(*second);
     if (message->errors().empty()) desk_->move(moves, time_s);
     services_.leading.go_on(), services_.is_led = true;
+  } else if (std::optional<Parameters> ready = message->object_if("ready")) {
+    const std::uint32_t stage = std::uint32_t(ready->number("stage", 0, Desk::kMostStages - 1));
+    if (message->errors().empty()) desk_->ready(stage);
   } else if (const std::optional<double> id = message->number_if("cancel", 0, 9e15)) {
     if (const auto it = calls_.find(std::int64_t(*id)); it != calls_.end()) *it->second = true;
   } else {

@@ -60,11 +60,15 @@ function axesOf(player: Player, from: number, to: number) {
   );
 }
 
-/** The moment on a session's own clock, and how long it is. */
+/** The moment on a session's own clock, and how long it is: always as wide, or the picture above would change its height. */
 function OwnTime({ player, stage, name }: { player: Player; stage: number; name: string }) {
   const time = player.timeOf(stage), { duration_s } = player.tracks.get(stage)!.session.info;
-  const where = time < -5e-4 ? "before it begins" : time > duration_s + 5e-4 ? "after its end" : `of ${seconds(duration_s)}`;
-  return <output class={name}>{seconds(time)} <small>{where}</small></output>;
+  const where = time < -5e-4 ? "not begun" : time > duration_s + 5e-4 ? "has ended" : `of ${seconds(duration_s, duration_s < 100 ? 1 : 0)}`;
+  return (
+    <output class={name}>
+      <span style={{ "--characters": String(seconds(duration_s).length + 1) }}>{seconds(time)}</span> <small>{where}</small>
+    </output>
+  );
 }
 
 /** The clock of the session, or those of both. */

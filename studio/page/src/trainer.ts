@@ -50,6 +50,7 @@ export class Trainer {
   onEnded: (ended: EndedTraining) => void = () => {};
   onFailing: (problem: string) => void = () => {}; // what is recorded cannot be saved now
   private held = false;
+  private isLive = false; // its frames come
   private camera = 0; // of the scene, through which the hand looked last
   private view: SceneView | null = null;
   private readonly hands = [makeHand(), makeHand()];
@@ -63,8 +64,12 @@ export class Trainer {
 
   constructor(private readonly connection: Connection, private readonly viewer: Viewer) {
     connection.onStage(kTrainStage, (message) => (this.scene ? this.take(message) : this.pending.push(message)));
+    viewer.onReady = () => {
+      if (this.isLive) connection.send({ ready: { stage: kTrainStage } });
+    };
     connection.onEvent("train_ended", (content) => {
       this.release();
+      this.isLive = false;
       this.onEnded(content as EndedTraining);
     });
     connection.onEvent("train_waits", (content) => this.onWaiting((content as { text: string }).text));
@@ -121,7 +126,7 @@ export class Trainer {
     this.clear();
     const begun = await this.connection.call<BegunTraining>("train.begin",
       { scene, text, output, device, stage: kTrainStage, most_speed_m_per_s: kGuardSpeed }, { signal });
-    this.awaited = begun.awaited, this.isHeld = false, this.hasBegun = begun.awaited !== "", this.sceneKey = begun.scene_key;
+    this.isLive = true, this.awaited = begun.awaited, this.isHeld = false, this.hasBegun = begun.awaited !== "", this.sceneKey = begun.scene_key;
     // A hand that is not led here leaves the mouse free to look around.
     const { controls } = this.viewer;
     controls.enableZoom = this.awaited !== "";
@@ -143,7 +148,7 @@ export class Trainer {
   clear(): void {
     this.release();
     this.viewer.set(kTrainStage, null);
-    this.scene = null, this.ghostAway = null;
+    this.scene = null, this.ghostAway = null, this.isLive = false;
     this.pending = [];
   }
 

@@ -48,12 +48,14 @@ export class Viewer {
   private readonly rim = new three.DirectionalLight(0x9fc2ff, 0.7);
   private readonly observer: ResizeObserver;
   onDraw: () => void = () => {}; // before each drawing
+  onReady: () => void = () => {}; // a picture of something that moves is done: the next one would be drawn at once
   onTurn: () => void = () => {}; // the mouse or keys moved the camera
   fieldOfView = 32; // vertical, in a picture of 16:9 [degrees]
   isCovered = false; // by other pictures: nothing is drawn
   private isWanted = false;
   private isBusy = false; // with the picture before
   private isTurning = false;
+  private beganAt = 0; // the last picture of something that moves [ms]
   private readonly quality = new PictureQuality();
   private still: ReturnType<typeof setTimeout> | undefined; // until the picture counts as one that stands still
 
@@ -128,8 +130,8 @@ export class Viewer {
     return { x: (0.5 + 0.5 * seen.x) * this.canvas.clientWidth, y: (0.5 - 0.5 * seen.y) * this.canvas.clientHeight };
   }
 
-  /** Draws with the next frame of the screen after the picture before is done: pictures that pile up in the browser
-      would keep it from the pointer. */
+  /** Draws after the picture before is done, for pictures that pile up in the browser would keep it from the pointer: at
+      once if that began long ago, else with the next frame of the screen. */
   draw(): void {
     clearTimeout(this.still);
     if (this.isWanted) return;
@@ -138,23 +140,20 @@ export class Viewer {
   }
 
   private drawNext(): void {
-    requestAnimationFrame(() => this.drawMoving());
+    const isLate = performance.now() - this.beganAt > kLongerThanFrames && !document.hidden;
+    if (isLate) queueMicrotask(() => this.drawMoving()); // with all that is said to be drawn by then
+    else requestAnimationFrame(() => this.drawMoving());
   }
 
   private drawMoving(): void {
-    const began = performance.now();
+    const began = (this.beganAt = performance.now());
     this.isWanted = false;
     this.begin(false);
     this.awaitPicture(() => {
-      const took = performance.now() - began;
-      this.quality.add(took);
-      if (!this.isWanted) {
-        if (this.quality.isReduced) this.still = setTimeout(() => this.drawStill(), kStandsStill);
-      } else if (took > kLongerThanFrames) {
-        this.drawMoving();
-      } else {
-        this.drawNext();
-      }
+      this.quality.add(performance.now() - began);
+      this.onReady();
+      if (this.isWanted) this.drawNext();
+      else if (this.quality.isReduced) this.still = setTimeout(() => this.drawStill(), kStandsStill);
     });
   }
 

@@ -16,9 +16,8 @@ const axe = require.resolve("axe-core/axe.min.js");
 
 const kFlags = [
   "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
-  "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
-  // Without a GPU, WebGL of the processor is slow at all that is no WebGL. Benchmarks keep what was measured so far.
-  ...(/benchmark\.mjs$/.test(process.argv[1]) ? [] : ["--disable-gpu-rasterization", "--disable-gpu-compositing"]),
+  // As on a machine without a GPU: the processor draws the page, and WebGL where a page asks for it.
+  "--disable-gpu", "--enable-unsafe-swiftshader",
 ];
 
 let broken = "";

@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "studio/server/newest_state.h"
 #include "tests/studio/devices/igtl_client.h"
 #include "tests/studio/server/serving.h"
 #include "tests/studio/server/training.h"
@@ -116,6 +117,66 @@ TEST_F(TrainingTest, TrianglesComeAtItsBeginningAndThenOnlyWhenACutChangedThem) 
   EXPECT_EQ(alike, 0) << "nothing was cut since the triangles before";
   EXPECT_GT(before, 10) << "until the blade is in the tissue they are those of the beginning";
   EXPECT_GT(resting, 10) << "a blade that rests cuts nothing";
+}
+
+/// Holds the ball above the organ for so many times 8 ms, and says each `every`-th time, if that is not 0, that the
+/// page is ready. Returns how many frames came for it.
+std::size_t frames_of_a_training(SocketClient& client, int count, int every) {
+  const nlohmann::json begun = client.call("train.begin", {{"scene", "kidney.json"}, {"stage", 2}});
+  EXPECT_TRUE(begun.contains("result")) << begun;
+  const nlohmann::json& most = begun["result"]["view"]["most"];
+  const nlohmann::json above = {most[0], most[1], most[2].get<double>() + 0.02};
+  ShownFrames frames(client);
+  for (int i = 0; i < count; ++i) {
+    if (every > 0 && i % every == 0) client.send({{"ready", {{"stage", 2}}}});
+    client.send(
+        {{"hand", {{"position", above}, {"orientation", {1, 0, 0, 0}}, {"buttons", 1}, {"time_s", 100 + 0.008 * i}}}});
+    std::this_thread::sleep_for(std::chrono::milliseconds(8));
+    frames.read();
+  }
+  client.send({{"id", 99}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
+  return frames.until_end().size();
+}
+
+TEST_F(TrainingTest, FramesComeAsOftenAsThePageIsReadyForThem) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  constexpr int kPoses = 125;  // in a second at least
+  const auto begin = std::chrono::steady_clock::now();
+  const std::size_t pushed = frames_of_a_training(client, kPoses, 0), asked = frames_of_a_training(client, kPoses, 25);
+  const std::size_t hidden = frames_of_a_training(client, kPoses, kPoses);
+  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  std::printf(
+      "%zu frames for a client that says nothing, %zu for one that is ready five times, %zu for one that is once\n",
+      pushed, asked, hidden);
+  // One comes before the first tick, one may come at the end, and one every 250 ms in any case.
+  const std::size_t others = 2 + std::size_t(took / 0.25);
+  EXPECT_GT(pushed, 20u);
+  EXPECT_GE(asked, 5u);
+  EXPECT_LE(asked, 5 + others);
+  EXPECT_GE(hidden, 3u) << "a page that is hidden gets some";
+  EXPECT_LE(hidden, 1 + others);
+}
+
+TEST(NewestState, HoldsTheFirstTickAfterItWasTakenOrRefreshed) {
+  server::NewestState newest;
+  const auto offer = [&](int tick) {
+    State state;
+    state.tick = tick;
+    newest.offer(state, {}, 0, 0);
+  };
+  std::int64_t taken = 0;
+  const auto take = [&] { return newest.take([&](const server::LiveTick& tick) { taken = tick.state.tick; }); };
+  EXPECT_FALSE(take());
+  offer(1), offer(2);
+  EXPECT_TRUE(take());
+  EXPECT_EQ(taken, 1);
+  offer(3), offer(4);
+  newest.refresh();
+  EXPECT_FALSE(take());
+  offer(5);
+  EXPECT_TRUE(take());
+  EXPECT_EQ(taken, 5);
 }
 
 /// A tick of a session: how high the tool is [mm], and the force on it [N].
