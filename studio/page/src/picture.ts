@@ -1,12 +1,15 @@
 import * as three from "three";
 
+const kInARow = 4; // pictures of a size, more than come of one moment of a session
+
 /** The picture of a canvas, drawn with more or fewer pixels than the screen has. A browser that draws with the processor takes
-    as long for a canvas of another size as for a third of a picture, so that one picture of another size is copied into it;
-    more of them in a row are faster in a canvas of their own size. */
+    as long for a canvas of another size as for a third of a picture, so that a few pictures of another size are copied into
+    it; more of them in a row are faster in a canvas of their own size. */
 export class Picture {
   private readonly targets = new Map<number, three.WebGLRenderTarget>(); // of each number of pixels for one of the page
   private target: three.WebGLRenderTarget | null = null; // null: the canvas
   private ratio = 0; // pixels for one of the page, along each side
+  private alike = 0; // pictures in a row that had the same before this one
   private height = 0;
 
   /** `smoothsEdges`: the canvas has samples of its own, into which no other picture can be copied. */
@@ -19,7 +22,8 @@ export class Picture {
     const { renderer } = this, size = renderer.getSize(new three.Vector2());
     if (size.x !== width || size.y !== height) renderer.setSize(width, height, false);
     const screen = Math.min(devicePixelRatio, 2), fitting = ratio > screen && !this.smoothsEdges ? screen : ratio;
-    const goesOn = ratio === this.ratio || fitting !== ratio || this.smoothsEdges;
+    this.alike = ratio === this.ratio ? this.alike + 1 : 0;
+    const goesOn = this.alike >= kInARow || fitting !== ratio || this.smoothsEdges;
     if (goesOn && renderer.getPixelRatio() !== fitting) renderer.setPixelRatio(fitting);
     this.ratio = ratio, this.height = height;
     this.target = ratio === renderer.getPixelRatio() ? null : this.targetOf(ratio, Math.floor(width * ratio), Math.floor(height * ratio));
