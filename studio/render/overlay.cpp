@@ -291,6 +291,7 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
   const std::string ghost = is_narrow ? "" : small.shortened_inside(data.ghost, std::min(px(340), most - label));
   if (!is_narrow) inner = std::max({inner, label + small.width(session), label + small.width(ghost)});
   inner = std::max(inner, large.width(title));
+  for (const Fact& fact : facts) inner = std::max(inner, small.width(fact.name) + gap + small.width(fact.value));
   int x = margin + pad, y = margin + pad;
   if (is_narrow && !session.empty()) {
     const int names = label + small.width(session);

@@ -203,7 +203,7 @@ export class OrganMesh {
       for (let k = 0; k < 3; ++k) {
         const v = index[t + k], a = 3 * v, b = 3 * index[t + ((k + 1) % 3)];
         const x = p[b] - p[a], y = p[b + 1] - p[a + 1], z = p[b + 2] - p[a + 2];
-        sum[v] -= (x * n[a] + y * n[a + 1] + z * n[a + 2]) / (Math.hypot(x, y, z) || 1);
+        sum[v] -= (x * n[a] + y * n[a + 1] + z * n[a + 2]) / (Math.sqrt(x * x + y * y + z * z) || 1);
         count[v] += 1;
       }
     for (let v = 0; v < sum.length; ++v) sum[v] /= count[v] || 1;

@@ -217,7 +217,7 @@ export class Player {
         const isShown = () => shown.every((track) => this.tracks.get(track.stage) === track);
         this.wanted = null;
         const seen = await this.lookAt(newest, isPlain(newest) ? null : its).catch((failure) => {
-          if (isShown()) throw failure;
+          if (isShown() && !this.wanted) throw failure; // else the newer look may be possible
           return null;
         });
         if (seen && isShown()) onSeen(seen, newest);

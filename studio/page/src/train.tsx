@@ -322,9 +322,9 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
                   ];
                 }),
                 ["severed", `${frame?.severed ?? 0} elements`],
-                ["newest tick", `${(1e3 * (frame?.tickTime ?? 0)).toFixed(2)} ms`, "How long the program worked on it"],
-                ["99 of 100 ticks", frame?.tickP99 ? underMs(frame.tickP99, 2) : "–", "How long the program worked on the newest 500; the longest of each 100 are left out"],
-                ["late ticks", String(frame?.lateTicks ?? 0)],
+                ["newest step", `${(1e3 * (frame?.tickTime ?? 0)).toFixed(2)} ms`, "How long the program worked on it"],
+                ["99 of 100 steps", frame?.tickP99 ? underMs(frame.tickP99, 2) : "–", "How long the program worked on the newest 500; the longest of each 100 are left out"],
+                ["late steps", String(frame?.lateTicks ?? 0)],
                 ["behind the clock", seconds(frame?.slip ?? 0, 3)],
                 ["frames missed", String(frame?.missed ?? 0)],
               ]} />

@@ -98,8 +98,13 @@ step("the expert's ghost is ahead, or at the same place of its path", async () =
     const shown = await until(() => reading(page, "away from your tool"), isNear);
     assert.ok(isNear(shown), `${label}: ${shown} mm, ${1e3 * far}`);
   };
-  await page.waitForTimeout(200); // until the hand is drawn where it rests
-  const rests = await canvas.screenshot();
+  // Until the hand is drawn where it rests: three pictures in a row are the same.
+  let rests = await canvas.screenshot();
+  for (let alike = 0; alike < 2; ) {
+    await page.waitForTimeout(200);
+    const next = await canvas.screenshot();
+    alike = (await between(rests, next)).count < 20 ? alike + 1 : 0, rests = next;
+  }
   await choose("where you are on its path", far[here]);
   const same = await drawnAfter(rests);
   await choose("a little ahead", far[ahead]);

@@ -68,7 +68,7 @@ step("by keys a trainee starts, presses, records, ends, verifies and compares", 
   assert.equal(await page.evaluate(() => document.activeElement.tagName), "CANVAS", "the tool's keys work at once");
   // 46 keys take less than a tenth of a second here: the tool begins where they have led it, unless a tick was done before.
   await press("ArrowUp");
-  await until(() => reading(page, "newest tick"), (ms) => ms > 0);
+  await until(() => reading(page, "newest step"), (ms) => ms > 0);
   for (let i = 0; i < 46; ++i) await press("ArrowDown");
   await page.waitForFunction(() => Number.parseFloat(document.querySelector(".force-bar output").textContent) > 0.1);
   await press("ArrowUp");

@@ -278,10 +278,10 @@ step("the mouse presses, cuts and records", async () => {
   await moveMouse(page, { x: middle.x - 20, y: middle.y + 240 }, { x: 180, y: 0 }, 60);
   await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /severed[1-9]/.test(d.textContent)));
   await picture(page, "train-cut");
-  await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /99 of 100 ticksunder \d/.test(d.textContent)));
-  const ticks = await page.locator(".readings div:has(dt:text-is('99 of 100 ticks')) dd").innerText();
-  console.log(`training: ${await reading(page, "late ticks")} late ticks, 99 of 100 ticks ${ticks}, while a browser draws on the same processors`);
-  const behind = await reading(page, "behind the clock"), newest = await reading(page, "newest tick");
+  await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /99 of 100 stepsunder \d/.test(d.textContent)));
+  const ticks = await page.locator(".readings div:has(dt:text-is('99 of 100 steps')) dd").innerText();
+  console.log(`training: ${await reading(page, "late steps")} late ticks, 99 of 100 ticks ${ticks}, while a browser draws on the same processors`);
+  const behind = await reading(page, "behind the clock"), newest = await reading(page, "newest step");
   assert.ok(behind >= 0 && newest > 0 && Number(/under ([\d.]+) ms/.exec(ticks)[1]) > 0, `${behind} s behind, tick of ${newest} ms, ${ticks}`);
   await end(page);
   assert.match(await page.locator(".readings div:has(dt:text-is('behind the clock')) dd").first().innerText(), /never|at most/);
