@@ -40,10 +40,15 @@ export class SceneDocument {
     if (text !== saved) this.setText(text, ++this.gestures); // a draft can be undone
   }
 
-  /** Reads a scene and the draft of it that this browser kept. */
+  /** Reads a scene and the draft of it that this browser kept. A draft of another text than the file has by now stays one
+      of that text, so that it is not written over the file unasked. */
   static async open(connection: Connection, path: string, schema: () => Schema | null): Promise<SceneDocument> {
     const file = await connection.call<{ text: string; revision: string }>("scene.read", { path });
-    return new SceneDocument(connection, path, file.text, file.revision, localStorage.getItem(draftKey(path)) ?? file.text, schema);
+    const draft = localStorage.getItem(draftKey(path)), kept = localStorage.getItem(draftedKey(path));
+    const drafted = draft !== null && draft !== file.text && kept !== null ? (JSON.parse(kept) as typeof file) : file;
+    const made = new SceneDocument(connection, path, drafted.text, drafted.revision, draft ?? file.text, schema);
+    made.onDisk = drafted.revision === file.revision ? "same" : "changed";
+    return made;
   }
 
   get text(): string {
@@ -203,9 +208,11 @@ export class SceneDocument {
   }
 
   private keepDraft(): void {
-    const { text } = this;
-    if (text === this.saved) localStorage.removeItem(draftKey(this.path));
-    else localStorage.setItem(draftKey(this.path), text);
+    const { text, path } = this;
+    for (const key of [draftKey(path), draftedKey(path)]) localStorage.removeItem(key);
+    if (text === this.saved) return;
+    localStorage.setItem(draftedKey(path), JSON.stringify({ text: this.saved, revision: this.revision }));
+    localStorage.setItem(draftKey(path), text);
   }
 }
 
@@ -213,6 +220,11 @@ const kNoFile = "none"; // revision of a file that is not there
 
 function draftKey(path: string): string {
   return `ctpm.draft:${path}`;
+}
+
+/** Of the file that a draft began with: its text and revision. */
+function draftedKey(path: string): string {
+  return `ctpm.drafted:${path}`;
 }
 
 function changed(text: string, values: [JSONPath, Json | undefined][]): string {

@@ -1,11 +1,12 @@
 import { render } from "preact";
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { Connection, onNewToken, takeToken } from "./connection";
 import { Author } from "./author";
 import { Empty } from "./parts";
 import type { Listing } from "./protocol";
 import { hashOf, type Place, readHash, type Room } from "./place";
 import { Review } from "./review";
+import { command } from "./text";
 import { Train } from "./train";
 
 const kRooms: [Room, string][] = [["author", "Author"], ["train", "Train"], ["review", "Review"]];
@@ -55,6 +56,8 @@ function App() {
   const [place, setPlace] = useState<Place>(start.place);
   const list = () => void connection?.call<Listing>("folder.list").then(setListing, () => {});
   useEffect(list, [connection, room]);
+  const reviewed = useRef<Place>({}); // what was in review last, for whoever looks into another room
+  const keepReviewed = (there: Place) => (reviewed.current = there, writePlace("review", there));
   const go = (to: Room, there: Place) => {
     setPlace(there);
     setRoom(to);
@@ -67,7 +70,7 @@ function App() {
         <h1>ctpm <span>studio</span></h1>
         <nav aria-label="Rooms">
           {kRooms.map(([name, title]) => (
-            <button key={name} type="button" aria-current={room === name ? "page" : undefined} onClick={() => go(name, {})}>{title}</button>
+            <button key={name} type="button" aria-current={room === name ? "page" : undefined} onClick={() => go(name, name === "review" && room !== name ? reviewed.current : {})}>{title}</button>
           ))}
         </nav>
         <span class="folder" title="The folder that the studio was started in">{listing?.folder ?? ""}</span>
@@ -87,12 +90,12 @@ function App() {
           </Empty>
         ) : isClosed ? (
           <Empty title={connection ? "The studio has ended" : "This address is of another run"}>
-            <p>{connection ? "Start it again" : "Open the address that the program printed, or start it"}: <code>ctpm studio</code>. Where its address is opened, here or in
+            <p>{connection ? "Start it again" : "Open the address that the program printed, or start it"}: <code>{command("studio", listing?.folder)}</code>. Where its address is opened, here or in
               another tab, this page goes on. Scenes that were not saved are kept as drafts, and a session that was being recorded is there up to its last whole second: <code>ctpm recover</code></p>
           </Empty>
         ) : connection && listing ? (
           room === "review" ? (
-            <Review connection={connection} listing={listing} place={place} onPlace={(there) => writePlace("review", there)} />
+            <Review connection={connection} listing={listing} place={place} onPlace={keepReviewed} />
           ) : room === "author" ? (
             <Author connection={connection} listing={listing} onChanged={list} onTry={(scene, text, seen) => go("train", { scene, text, seen })} />
           ) : (

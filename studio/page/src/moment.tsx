@@ -10,7 +10,7 @@ export function shownEvents(events: SessionEvent[]): SessionEvent[] {
   return events.filter((event) => event.kind !== "late tick");
 }
 
-export type ShownFrame = { force: number[]; depth: number; contacts: number; severed: number; isSame: boolean; isGlimpse: boolean; missed: number; tick: number; second: { force: number[]; depth: number } | null } | null;
+export type ShownFrame = { force: number[]; depth: number; contacts: number; severed: number; isSame: boolean; isGlimpse: boolean; missed: number; tick: number; tool: number; second: { force: number[]; depth: number; tool: number } | null } | null;
 
 /** The moment that is shown, in numbers, and the session that it is of. */
 export function Moment({ connection, player, frame, other }: { connection: Connection; player: Player; frame: ShownFrame; other: ShownFrame }) {
@@ -33,11 +33,13 @@ export function Moment({ connection, player, frame, other }: { connection: Conne
     }
     setProgress(null);
   };
-  const rows = (shown: ShownFrame): [string, string][] => shown ? [
+  const depthOf = (stage: number, { tool, depth }: { tool: number; depth: number }) =>
+    player.tracks.get(stage)?.session.view.tools[tool]?.kind === "scalpel" ? "–" : millimetres(depth, 2); // a blade has none
+  const rows = (shown: ShownFrame, stage: number): [string, string][] => shown ? [
     ["force", newtons(Math.hypot(...shown.force))],
-    ["depth", millimetres(shown.depth, 2)],
+    ["depth", depthOf(stage, shown)],
     ...(shown.second
-      ? ([["force, left", newtons(Math.hypot(...shown.second.force))], ["depth, left", millimetres(shown.second.depth, 2)]] as [string, string][])
+      ? ([["force, left", newtons(Math.hypot(...shown.second.force))], ["depth, left", depthOf(stage, shown.second)]] as [string, string][])
       : []),
     ["touched", `${shown.contacts} points`],
     ["severed", `${shown.severed} elements`],
@@ -46,11 +48,11 @@ export function Moment({ connection, player, frame, other }: { connection: Conne
   return (
     <>
       <Section title={other ? "This moment, expert" : "This moment"}>
-        <Readings rows={[["step", String(frame?.tick ?? 0)], ...rows(frame),
+        <Readings rows={[["step", String(frame?.tick ?? 0)], ...rows(frame, 0),
           ["picture after", player.pictureAfter === null ? "…" : `${player.pictureAfter.toFixed(0)} ms`],
           ["replayed after", player.replayedAfter === null ? "…" : `${player.replayedAfter.toFixed(0)} ms`]]} />
       </Section>
-      {other && <Section title="Trainee"><Readings rows={rows(other)} /></Section>}
+      {other && <Section title="Trainee"><Readings rows={rows(other, 1)} /></Section>}
       <Section title="Events">
         <ul class="jumps">
           {shownEvents(info.events).map((event, i) => (

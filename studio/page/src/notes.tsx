@@ -42,8 +42,8 @@ export function NotesPanel({ connection, player, onNotes }: { connection: Connec
     const list = [...notes.notes, { time_s: time, text: text.trim() }].sort((a, b) => a.time_s - b.time_s);
     if (await write(list)) setText("");
   };
+  const link = `${location.origin}/#${hashOf("review", player.place)}`;
   const copyLink = () => {
-    const link = `${location.origin}/#${hashOf("review", player.place)}`;
     setCopied(link);
     void navigator.clipboard?.writeText(link).catch(() => {});
   };
@@ -81,7 +81,7 @@ export function NotesPanel({ connection, player, onNotes }: { connection: Connec
       </Section>
       <Section title="Link to this moment">
         <button type="button" onClick={copyLink}>Copy the link</button>
-        {copied && <p class="hint" role="status">Opens this moment in this browser while the studio runs: <code>{copied}</code></p>}
+        {copied === link && <p class="hint" role="status">Opens this moment in this browser while the studio runs: <code>{copied}</code></p>}
       </Section>
     </>
   );

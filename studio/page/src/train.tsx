@@ -252,7 +252,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
             <p role="status">{waits || "The session begins with its first pose."}</p>
           </Empty>
         )}
-        {phase === "running" && frame && trainer && !trainer.awaited && !trainer.isHeld && !isTouch && (
+        {phase === "running" && frame && trainer && !trainer.awaited && !trainer.isHeld && !trainer.isLedByKeys && !isTouch && (
           <div ref={ring} class="take-up" hidden aria-hidden="true"><span>move the pointer here to take it up</span></div>
         )}
         {phase === "running" && frame && (
@@ -286,7 +286,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
               </div>
             )}
             <span class="recorded">{output ? <><i aria-hidden="true" /> records {output}</> : "not recorded"}</span>
-            <output class="clock">{trainer.hasBegun ? seconds(frame?.time ?? 0, 1) : "begins when you take up the tool"}</output>
+            <output class="clock">{trainer.hasBegun ? seconds(frame?.time ?? 0, 1) : "not begun"}</output>
             {!trainer.awaited && isTouch && (
               <div class="buttons held" role="group" aria-label="Depth and turning">
                 {kHeld.map(([text, key]) => <HeldButton key={key} text={text} onHeld={() => trainer.press(key, false)} />)}
@@ -388,27 +388,28 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
   const [progress, setProgress] = useState<[number, number] | null>(null);
   const [error, setError] = useState<Error | null>(null);
   const running = useRef<AbortController | null>(null);
+  const path = ended.errors.length === 0 ? ended.path : ""; // a file of that name may be somebody else's
   const [otherScene, setOtherScene] = useState(""); // why the expert's session cannot be compared with
 
   useEffect(() => {
     let isWanted = true;
     setOtherScene(""), setComparison(null);
-    if (expert && ended.path)
-      connection.call<Comparable>("session.comparable", { expert, trainee: ended.path })
+    if (expert && path)
+      connection.call<Comparable>("session.comparable", { expert, trainee: path })
         .then(({ text }) => isWanted && setOtherScene(text), (failure) => isWanted && setError(failure));
     return () => void (isWanted = false);
-  }, [expert, ended.path]);
+  }, [expert, path]);
   const isCompared = expert !== "" && otherScene === "";
-  const others = listing.sessions.filter((session) => session.path !== ended.path);
+  const others = listing.sessions.filter((session) => session.path !== path);
   const compare = async () => {
     const progress = (done: number, total: number) => setProgress([done, total]);
     setError(null), setComparison(null), setVerdict(null), progress(0, 1);
     running.current = new AbortController();
     const { signal } = running.current;
     try {
-      setVerdict(await connection.call("session.verify", { path: ended.path }, { progress, signal }));
+      setVerdict(await connection.call("session.verify", { path }, { progress, signal }));
       progress(0, 1);
-      if (isCompared) setComparison(await connection.call<ComparisonResult>("session.compare", { expert, trainee: ended.path }, { progress, signal }));
+      if (isCompared) setComparison(await connection.call<ComparisonResult>("session.compare", { expert, trainee: path }, { progress, signal }));
     } catch (failure) {
       setError(failure as Error);
     }
@@ -419,7 +420,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
       {ended.errors.map((problem, i) => <p key={i} class="warning" role="alert">{problemText(problem)}</p>)}
       {ended.fault && <p class="warning">{ended.fault}</p>}
       {ended.refused && <p class="warning">The simulation was refused; what came before is saved.</p>}
-      {ended.path && (
+      {path && (
         <Section title="Verify and compare">
           <ExpertChoice listing={others} expert={expert} onExpert={onExpert} use="to compare with" />
           {otherScene && <p class="warning" role="alert">{otherScene}. They cannot be compared.</p>}
@@ -429,11 +430,11 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
           <Problems error={error} />
         </Section>
       )}
-      {comparison && <Outcome comparison={comparison} onMoment={(besideTime) => onReview({ session: expert, beside: ended.path, besideTime, comparison })} />}
+      {comparison && <Outcome comparison={comparison} onMoment={(besideTime) => onReview({ session: expert, beside: path, besideTime, comparison })} />}
       <Section title="This session">
         {ended.ticks !== undefined && (
           <Readings rows={[
-            ["recorded as", ended.path || "not recorded"],
+            ["recorded as", path || "not recorded"],
             ["duration", seconds(ended.ticks * (ended.tick_s ?? 1e-3), 1)],
             ["largest force", newtons(ended.max_force_n ?? 0)],
             ["largest depth", millimetres(ended.max_depth_m ?? 0, 2)],
@@ -448,13 +449,13 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
         )}
         <button type="button" onClick={onAgain}>Train again</button>
         {onAuthor && <button type="button" onClick={onAuthor}>Back to Author</button>}
-        {ended.path && <button type="button" onClick={() => onReview({ session: ended.path, time: 0 })}>Open in Review</button>}
+        {path && <button type="button" onClick={() => onReview({ session: path, time: 0 })}>Open in Review</button>}
       </Section>
       {comparison && <Measures comparison={comparison} />}
-      {ended.path && (
+      {path && (
         <Section title="The same in a terminal">
-          <ShownCommand text={command("verify", ended.path)} />
-          {isCompared && <ShownCommand text={command("compare", expert, ended.path, "-o", "report")} />}
+          <ShownCommand text={command("verify", path)} />
+          {isCompared && <ShownCommand text={command("compare", expert, path, "-o", "report")} />}
         </Section>
       )}
     </>

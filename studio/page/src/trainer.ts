@@ -49,6 +49,7 @@ export class Trainer {
   onFrame: () => void = () => {};
   onEnded: (ended: EndedTraining) => void = () => {};
   onFailing: (problem: string) => void = () => {}; // what is recorded cannot be saved now
+  isLedByKeys = false; // and not by the pointer since
   private held = false;
   private isLive = false; // its frames come
   private camera = 0; // of the scene, through which the hand looked last
@@ -81,7 +82,7 @@ export class Trainer {
     return this.held;
   }
   set isHeld(isHeld: boolean) {
-    this.held = isHeld;
+    this.held = isHeld, this.isLedByKeys = false;
     this.hasBegun ||= isHeld;
   }
 
@@ -126,7 +127,7 @@ export class Trainer {
     this.clear();
     const begun = await this.connection.call<BegunTraining>("train.begin",
       { scene, text, output, device, stage: kTrainStage, most_speed_m_per_s: kGuardSpeed }, { signal });
-    this.isLive = true, this.awaited = begun.awaited, this.isHeld = false, this.hasBegun = begun.awaited !== "", this.sceneKey = begun.scene_key;
+    this.isLive = true, this.awaited = begun.awaited, this.isHeld = this.isLedByKeys = false, this.hasBegun = begun.awaited !== "", this.sceneKey = begun.scene_key;
     // A hand that is not led here leaves the mouse free to look around.
     const { controls } = this.viewer;
     controls.enableZoom = this.awaited !== "";
@@ -212,6 +213,7 @@ export class Trainer {
       q: [0, 0, 1], e: [0, 0, -1], w: [1, 0, 0], s: [-1, 0, 0], a: [0, 1, 0], d: [0, -1, 0],
     };
     const move = moves[key], turn = turns[key.toLowerCase()];
+    if (move || turn) this.isLedByKeys ||= !this.isHeld;
     if (move) this.moveBy(...move);
     else if (turn) this.hasBegun = true, this.own.turn.multiply(new three.Quaternion().setFromAxisAngle(new three.Vector3(...turn), kTurnStep * (isFine ? 0.25 : 1)));
     else if (key.toLowerCase() === "x" && this.handCount > 1) this.lead(1 - this.led);

@@ -210,6 +210,15 @@ step("saving is by key, and never over somebody else's change", async () => {
   await page.keyboard.press("Control+s");
   await page.waitForSelector(".conflict:has-text('was changed on the disk')");
   assert.equal(onDisk(), changed + "\n\n");
+  // It is known after the page was loaded again, too: the draft is of what the file said before.
+  await page.reload();
+  await page.click(`.scenes button:has-text('${kScene.replace(".json", "")}')`);
+  await page.waitForSelector(".conflict:has-text('was changed on the disk')");
+  await settled();
+  assert.equal(await text(), mine);
+  await page.keyboard.press("Control+s");
+  await page.waitForTimeout(500);
+  assert.equal(onDisk(), changed + "\n\n");
   await button("Keep mine").click();
   await page.waitForSelector(".conflict", { state: "detached" });
   assert.equal(onDisk(), changed + "\n\n");

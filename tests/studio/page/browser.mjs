@@ -107,16 +107,21 @@ export async function openStudio(folder, port = 0, ...more) {
   });
   page.on("dialog", (dialog) => complaints.push(`dialog: ${dialog.message()}`));
   let cameAt = Date.now(); // the newest message of the program
+  const live = { ready: 0, frames: 0 }; // of a training: how often the page asked for a picture, and how many came
   let sent = null, count = 0, rested = 0; // the hand that the page sent last, of how many, and how many of them were where it is
   const apart = (a, b) => ["position", "orientation"].some((of) => a[of].some((x, i) => Math.abs(x - b[of][i]) > 1e-9));
   page.on("websocket", (socket) => socket.on("framesent", ({ payload }) => {
+    live.ready += Number(String(payload).startsWith('{"ready"'));
     if (!String(payload).startsWith('{"hand"')) return;
     const { hand } = JSON.parse(String(payload));
     ++count;
     rested = sent && !apart(hand, sent) ? rested + 1 : 0;
     sent = hand;
   }));
-  page.on("websocket", (socket) => socket.on("framereceived", () => (cameAt = Date.now())));
+  page.on("websocket", (socket) => socket.on("framereceived", ({ payload }) => {
+    cameAt = Date.now();
+    live.frames += Number(typeof payload !== "string" && payload.readUInt32LE(0) === 2 && (payload.readUInt32LE(20) & 2) !== 0);
+  }));
   /** Waits until the program has sent nothing for that time. */
   const quiet = async (ms = 300) => {
     for (const began = Date.now(); Date.now() < Math.max(cameAt, began) + ms; ) await new Promise((resolve) => setTimeout(resolve, 20));
@@ -162,7 +167,7 @@ export async function openStudio(folder, port = 0, ...more) {
     });
     return (await answer.json()).result;
   };
-  return { page, address, complaints, close, kill, limitFiles, ended: () => (server.exitCode ?? server.signalCode ?? ended(server)), startAgain, call, hand: () => sent, handsSent: () => count, handAtRest, quiet };
+  return { page, address, complaints, close, kill, limitFiles, ended: () => (server.exitCode ?? server.signalCode ?? ended(server)), startAgain, call, hand: () => sent, handsSent: () => count, live, handAtRest, quiet };
 }
 
 /** Reads until what was read is as it should be; the last that was read. */

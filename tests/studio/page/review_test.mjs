@@ -284,7 +284,10 @@ step("views, cutaway and cameras are those of export", async () => {
   await choose("view", "surface");
   await choose("camera", "");
   await choose("cutaway", "");
-  await page.waitForFunction((first) => document.querySelector("#panel .command code").textContent.includes(`--camera ${first}`), firstCamera);
+  await page.waitForFunction((first) => document.querySelector("#panel .command code").textContent.includes(`--camera ${first}`), firstCamera, { timeout: 60000 }).catch(async () => {
+    const looks = await page.locator(".look-bar select").evaluateAll((all) => all.map((select) => select.value));
+    assert.fail(`${await shown()} is not from ${firstCamera}; chosen: ${looks}; said: ${await page.locator(".problems").allInnerTexts()}`);
+  });
   await page.waitForSelector(".drawings canvas[hidden]", { state: "attached" });
   await page.click("#tab-moment");
 });
@@ -394,6 +397,16 @@ step("a picture that stands still is finer than one that moves", async () => {
   await page.evaluate(() => clearInterval(globalThis.turning));
   await finer(true);
   assert.notDeepEqual(await canvas.screenshot(), before, "the finer picture is the newest one");
+});
+
+step("who looks into another room finds the session as it was, at its moment", async () => {
+  const placed = () => (({ searchParams }) => [searchParams.get("session"), searchParams.get("t")])(new URL(page.url().replace("#", "?")));
+  const before = await until(placed, ([session, time]) => session === kExpert && time > 0);
+  await page.click("header nav button:has-text('Author')");
+  await page.waitForSelector(".author");
+  await page.click("header nav button:has-text('Review')");
+  await page.waitForFunction((time) => document.querySelector(".review .clock")?.textContent.startsWith(Number(time).toFixed(3)), before[1]);
+  assert.deepEqual(await until(placed, ([, time]) => time === before[1]), before);
 });
 
 step("of a session that cannot be read the reason stays until another one is chosen, and nothing of the one before", async () => {
