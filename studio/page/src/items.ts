@@ -73,6 +73,18 @@ export function organPoses(scene: Json | undefined): OrganPose[] {
   return listOf(scene, "organs").map(poseOf);
 }
 
+/** Above everything, over the largest organ: between several there may be nothing to press. A tool is taken up there, by its
+    radius and kClearance higher, if the scene does not say where. */
+export function aboveOrgans({ up: [x, y, z], least, most, organs }: SceneView): three.Vector3 {
+  const up = new three.Vector3(x, y, z), middleOf = (box: { least: Vector; most: Vector }) => new three.Vector3(...box.least).add(new three.Vector3(...box.most)).multiplyScalar(0.5);
+  const size = new three.Vector3(...most).sub(new three.Vector3(...least)), middle = middleOf({ least, most });
+  const height = Math.abs(x) * size.x + Math.abs(y) * size.y + Math.abs(z) * size.z;
+  const chosen = organs.length > 1 ? middleOf(organs.reduce((largest, organ) => (organ.spheres > largest.spheres ? organ : largest))) : middle;
+  return chosen.addScaledVector(up, up.dot(middle) + height / 2 - up.dot(chosen));
+}
+export const kClearance = 0.02; // [m]
+const kBeside = 0.03; // from the tool that is taken up first to those that wait [m]
+
 /** Everything in a scene that has a place. `view`: as it is shown, for places that the text leaves open. `middles`: of its organs, in their meshes [m]. */
 export function itemsOf(scene: Json | undefined, view: SceneView | null, middles: three.Vector3[] = []): Item[] {
   const items: Item[] = [];
@@ -80,7 +92,7 @@ export function itemsOf(scene: Json | undefined, view: SceneView | null, middles
     items.push({
       key: path.join("/"), path, kind, shape, name, place, index: Number(path.at(-1)), turn: new three.Quaternion(), size: new three.Vector3(), offset: new three.Vector3(), isWritten: true, ...more,
     });
-  const middle = view ? new three.Vector3(...view.least).add(new three.Vector3(...view.most)).multiplyScalar(0.5) : new three.Vector3();
+  const above = view ? aboveOrgans(view) : new three.Vector3();
   listOf(scene, "organs").forEach((organ, i) => {
     const name = textOf(organ.name, `organ ${i + 1}`);
     const { place, turn, scale } = poseOf(organ);
@@ -104,15 +116,17 @@ export function itemsOf(scene: Json | undefined, view: SceneView | null, middles
       }
     });
   });
+  let waiting = 0; // tools so far that a hand takes up
   listOf(scene, "tools").forEach((tool, i) => {
     const shape = tool.kind === "pin" ? "pin" : tool.kind === "scalpel" ? "scalpel" : "ball";
     const radius = lengthOf(tool.radius_mm, 0);
     const place = metresOf(shape === "pin" ? tool.holds_mm : tool.at_mm);
     const pointing = numbersOf(tool.pointing) as Vector | null, facing = numbersOf(tool.facing) as Vector | null;
     const up = view ? new three.Vector3(...view.up) : new three.Vector3(0, 0, 1);
-    const height = view ? Math.abs(up.dot(new three.Vector3(...view.most).sub(new three.Vector3(...view.least)))) : 0;
-    const above = middle.clone().addScaledVector(up, height / 2 + radius + 0.02).addScaledVector(acrossOf(up), 0.03 * (i - (listOf(scene, "tools").length - 1) / 2));
-    add(["tools", i], "tool", shape, textOf(tool.name, `tool ${i + 1}`), place ?? (shape === "pin" ? null : above), {
+    // The first one where it is taken up; others beside it, alternately.
+    const step = shape === "pin" ? 0 : (waiting % 2 ? 1 : -1) * Math.ceil(waiting++ / 2);
+    const waits = above.clone().addScaledVector(up, radius + kClearance).addScaledVector(acrossOf(up), kBeside * step);
+    add(["tools", i], "tool", shape, textOf(tool.name, `tool ${i + 1}`), place ?? (shape === "pin" ? null : waits), {
       turn: orientationOf(!place ? (up.clone().negate().toArray() as Vector) : pointing && Math.hypot(...pointing) > 0 ? pointing : [0, 0, -1], place && facing ? facing : undefined),
       size: new three.Vector3(radius, radius, radius), isWritten: place !== null,
     });

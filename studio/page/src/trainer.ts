@@ -1,6 +1,7 @@
 import * as three from "three";
 import type { Binary, Connection } from "./connection";
 import { readGamepad } from "./gamepad";
+import { aboveOrgans, kClearance } from "./items";
 import { orientationOf } from "./pose";
 import type { BegunTraining, CameraView, EndedTraining, Frame, HandFrame, Motion, SceneView, Vector } from "./protocol";
 import { StageScene } from "./stage_scene";
@@ -297,13 +298,7 @@ export class Trainer {
     const view = this.view!;
     const up = new three.Vector3(...view.up);
     this.box.set(new three.Vector3(...view.least), new three.Vector3(...view.most));
-    const middle = this.box.getCenter(new three.Vector3()), size = this.box.getSize(new three.Vector3());
-    const height = Math.abs(up.x) * size.x + Math.abs(up.y) * size.y + Math.abs(up.z) * size.z;
-    const right = new three.Vector3().setFromMatrixColumn(this.viewer.camera.matrixWorld, 0);
-    // Of several organs, above the largest one: between them there may be nothing to press.
-    const largest = view.organs.reduce((most, organ) => (organ.spheres > most.spheres ? organ : most));
-    const chosen = view.organs.length > 1 ? new three.Box3(new three.Vector3(...largest.least), new three.Vector3(...largest.most)).getCenter(new three.Vector3()) : middle;
-    const above = chosen.addScaledVector(up, up.dot(middle) + height / 2 - up.dot(chosen));
+    const right = new three.Vector3().setFromMatrixColumn(this.viewer.camera.matrixWorld, 0), above = aboveOrgans(view);
     for (const own of this.hands) own.tool = -1;
     for (let hand = this.handCount - 1; hand >= 0; --hand) {
       this.led = hand;
@@ -315,7 +310,7 @@ export class Trainer {
         own.turn.copy(orientationOf(held.pointing ?? [0, 0, -1], held.facing));
         this.box.expandByPoint(own.target);
       } else {
-        own.target.copy(above).addScaledVector(up, (held?.radius_m ?? 0) + 0.02);
+        own.target.copy(above).addScaledVector(up, (held?.radius_m ?? 0) + kClearance);
         if (this.handCount > 1) own.target.addScaledVector(right, hand === 0 ? kApart : -kApart);
         own.turn.setFromUnitVectors(new three.Vector3(0, 0, 1), up);
       }

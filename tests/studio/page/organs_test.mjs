@@ -227,10 +227,18 @@ step("a scene is tried at once, as it is on the screen, and nothing is kept", as
   await page.click(".objects button:has-text('ball')");
   const files = readdirSync(folder).sort(), organs = (await scene()).organs.length;
   assert.equal(organs, 2);
+  // The scene does not say where its ball is taken up; Author shows it where that will be.
+  assert.equal((await scene()).tools.find(({ name }) => name === "ball").at_mm, undefined);
+  const inPicture = async ({ x, y }) => {
+    const box = await page.locator(".view > canvas").boundingBox();
+    return [x - box.x - box.width / 2, y - box.y - box.height / 2].map((away) => away / box.width);
+  };
+  const shown = await inPicture(await centreOf(handle("ball")));
   const started = Date.now();
   await button("Try it").click();
   await page.waitForSelector(".view.running .force-bar");
-  const tool = await takeUp(page);
+  const tool = await takeUp(page), tried = await inPicture(tool);
+  assert.ok(Math.hypot(tried[0] - shown[0], tried[1] - shown[1]) < 0.005, `${shown} and ${tried}, in widths of the picture`);
   console.log(`author: from "Try it" to a scene of ${organs} organs in the hand ${Date.now() - started} ms`);
   const force = async () => Number.parseFloat(await page.locator(".force-bar output").innerText());
   for (let i = 0; i < 60 && (await force()) < 1; ++i) await page.mouse.move(tool.x, tool.y + 4 * i);
