@@ -70,7 +70,7 @@ step("the expert's ghost is ahead, or at the same place of its path", async () =
   const far = poses.map((pose) => (pose[0] < 0 ? Infinity : Math.hypot(...minus(placeOf(pose), hand))));
   const here = far.indexOf(Math.min(...far)), ahead = here + Math.round(0.25 / interval_s);
   assert.ok(here > first && far[here] < 1e-3 && far[ahead] > 5e-3, `${here}: ${far[here]}, ${ahead}: ${far[ahead]}`);
-  // What differs between two pictures.
+  // Where two pictures differ by a ghost, which is blue: edges differ, too, where one of them is drawn finer.
   const between = (shown, other) => page.evaluate(async ([a, b]) => {
     const pixels = async (bytes) => {
       const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))]));
@@ -80,8 +80,10 @@ step("the expert's ghost is ahead, or at the same place of its path", async () =
     };
     const [one, other] = [await pixels(a), await pixels(b)];
     let lowest = -1, count = 0;
-    for (let i = 0; i < one.data.length; i += 4)
-      if (Math.abs(one.data[i] - other.data[i]) + Math.abs(one.data[i + 2] - other.data[i + 2]) > 20) ++count, lowest = Math.floor(i / 4 / one.width);
+    for (let i = 0; i < one.data.length; i += 4) {
+      const red = one.data[i] - other.data[i], blue = one.data[i + 2] - other.data[i + 2];
+      if (Math.abs(blue) > 15 && Math.sign(blue) * (blue - red) > 25) ++count, lowest = Math.floor(i / 4 / one.width);
+    }
     return { lowest, count };
   }, [shown, other].map((bytes) => bytes.toString("base64")));
   /** The next picture in which the ghost is elsewhere, or gone. */
