@@ -16,31 +16,33 @@ struct LiveTick {
 };
 
 /// One slot between the thread of the ticks, which never waits, and one that makes pictures: a tick is copied only
-/// after the last one was taken or dropped.
+/// after it was asked for.
 class NewestState {
  public:
   /// Called after each tick.
   void offer(const State& state, const recordings::TickRecord& record, std::int64_t late_ticks, double tick_p99) {
-    if (is_full_.load(std::memory_order_acquire)) return;
+    if (slot_.load(std::memory_order_acquire) != Slot::asked) return;
     tick_.state = state, tick_.record = record, tick_.late_ticks = late_ticks, tick_.tick_p99 = tick_p99;
-    is_full_.store(true, std::memory_order_release);
+    slot_.store(Slot::full, std::memory_order_release);
   }
 
-  /// Empties the slot, so that the next tick is in it.
-  void refresh() { is_full_.store(false, std::memory_order_release); }
+  /// The next tick is wanted; for the thread that takes it.
+  void ask() { slot_.store(Slot::asked, std::memory_order_release); }
 
-  /// Gives `take` the tick in the slot, if there is one, and empties it.
+  /// Gives `take` the tick that was asked for, if it is there.
   template <class Take>
   bool take(Take&& take) {
-    if (!is_full_.load(std::memory_order_acquire)) return false;
+    if (slot_.load(std::memory_order_acquire) != Slot::full) return false;
     take(tick_);
-    is_full_.store(false, std::memory_order_release);
+    slot_.store(Slot::empty, std::memory_order_release);
     return true;
   }
 
  private:
+  enum class Slot { empty, asked, full };
+
   LiveTick tick_;
-  std::atomic<bool> is_full_{false};
+  std::atomic<Slot> slot_{Slot::empty};
 };
 
 }  // namespace ctpm::server

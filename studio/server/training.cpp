@@ -193,7 +193,7 @@ void Training::show() {
   };
   while (!has_ended_) {
     pace_.wait();
-    newest_.refresh();
+    newest_.ask();
     while (!newest_.take(make) && !has_ended_) std::this_thread::sleep_for(kLookAgain);
   }
 }

@@ -158,7 +158,7 @@ TEST_F(TrainingTest, FramesComeAsOftenAsThePageIsReadyForThem) {
   EXPECT_LE(hidden, 1 + others);
 }
 
-TEST(NewestState, HoldsTheFirstTickAfterItWasTakenOrRefreshed) {
+TEST(NewestState, HoldsTheFirstTickAfterItWasAskedFor) {
   server::NewestState newest;
   const auto offer = [&](int tick) {
     State state;
@@ -167,13 +167,16 @@ TEST(NewestState, HoldsTheFirstTickAfterItWasTakenOrRefreshed) {
   };
   std::int64_t taken = 0;
   const auto take = [&] { return newest.take([&](const server::LiveTick& tick) { taken = tick.state.tick; }); };
+  offer(1);
+  EXPECT_FALSE(take()) << "nothing is copied unasked";
+  newest.ask();
   EXPECT_FALSE(take());
-  offer(1), offer(2);
+  offer(2), offer(3);
   EXPECT_TRUE(take());
-  EXPECT_EQ(taken, 1);
-  offer(3), offer(4);
-  newest.refresh();
+  EXPECT_EQ(taken, 2);
   EXPECT_FALSE(take());
+  offer(4);
+  newest.ask();
   offer(5);
   EXPECT_TRUE(take());
   EXPECT_EQ(taken, 5);
