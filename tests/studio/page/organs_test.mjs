@@ -241,7 +241,8 @@ step("a scene is tried at once, as it is on the screen, and nothing is kept", as
   assert.ok(Math.hypot(tried[0] - shown[0], tried[1] - shown[1]) < 0.005, `${shown} and ${tried}, in widths of the picture`);
   console.log(`author: from "Try it" to a scene of ${organs} organs in the hand ${Date.now() - started} ms`);
   const force = async () => Number.parseFloat(await page.locator(".force-bar output").innerText());
-  for (let i = 0; i < 60 && (await force()) < 1; ++i) await page.mouse.move(tool.x, tool.y + 4 * i);
+  // As slowly as a hand: the ball follows, and is not far in the organ before its force is seen.
+  for (let i = 0; i < 120 && (await force()) < 1; ++i) await page.mouse.move(tool.x, tool.y + 2 * i), await page.waitForTimeout(30);
   assert.ok((await until(force, (newtons) => newtons > 0.1)) > 0.1);
   await picture(page, "author-try");
   await page.keyboard.press("Escape");
