@@ -48,7 +48,7 @@ class Desk {
   /// Ends it, if one runs, and waits until it is saved.
   void end_training();
 
-  /// The page soon draws the next picture of a running session; see PicturePace.
+  /// The page would draw the next picture of a running session at once; see PicturePace.
   void ready(std::uint32_t number);
 
   /// Moves the hands of a running session; called from one thread.

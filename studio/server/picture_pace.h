@@ -11,7 +11,7 @@ namespace ctpm::server {
 /// it time that it needs for drawing and for the poses of the hand.
 class PicturePace {
  public:
-  /// The page soon draws the next picture, and will say so again.
+  /// The page would draw the next picture at once, and will say so again.
   void ready() {
     {
       const std::lock_guard lock(mutex_);

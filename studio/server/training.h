@@ -49,7 +49,7 @@ class Training {
       if (moves[i] && hands_[i] != nullptr) hands_[i]->move(*moves[i], sent_s);
   }
 
-  /// The page soon draws the next picture of that stage; see PicturePace.
+  /// The page would draw the next picture of that stage at once; see PicturePace.
   void ready(std::uint32_t stage) {
     if (stage == stage_) pace_.ready();
   }

@@ -209,10 +209,12 @@ export class SceneDocument {
 
   private keepDraft(): void {
     const { text, path } = this;
-    for (const key of [draftKey(path), draftedKey(path)]) localStorage.removeItem(key);
-    if (text === this.saved) return;
-    localStorage.setItem(draftedKey(path), JSON.stringify({ text: this.saved, revision: this.revision }));
-    localStorage.setItem(draftKey(path), text);
+    if (text === this.saved) {
+      for (const key of [draftKey(path), draftedKey(path)]) localStorage.removeItem(key);
+    } else {
+      localStorage.setItem(draftedKey(path), JSON.stringify({ text: this.saved, revision: this.revision }));
+      localStorage.setItem(draftKey(path), text);
+    }
   }
 }
 

@@ -124,7 +124,8 @@ export function itemsOf(scene: Json | undefined, view: SceneView | null, middles
     const pointing = numbersOf(tool.pointing) as Vector | null, facing = numbersOf(tool.facing) as Vector | null;
     const up = view ? new three.Vector3(...view.up) : new three.Vector3(0, 0, 1);
     // The first one where it is taken up; others beside it, alternately.
-    const step = shape === "pin" ? 0 : (waiting % 2 ? 1 : -1) * Math.ceil(waiting++ / 2);
+    const step = (waiting % 2 ? 1 : -1) * Math.ceil(waiting / 2);
+    if (shape !== "pin") ++waiting;
     const waits = above.clone().addScaledVector(up, radius + kClearance).addScaledVector(acrossOf(up), kBeside * step);
     add(["tools", i], "tool", shape, textOf(tool.name, `tool ${i + 1}`), place ?? (shape === "pin" ? null : waits), {
       turn: orientationOf(!place ? (up.clone().negate().toArray() as Vector) : pointing && Math.hypot(...pointing) > 0 ? pointing : [0, 0, -1], place && facing ? facing : undefined),

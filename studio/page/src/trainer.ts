@@ -128,7 +128,7 @@ export class Trainer {
     this.clear();
     const begun = await this.connection.call<BegunTraining>("train.begin",
       { scene, text, output, device, stage: kTrainStage, most_speed_m_per_s: kGuardSpeed }, { signal });
-    this.isLive = true, this.awaited = begun.awaited, this.isHeld = this.isLedByKeys = false, this.hasBegun = begun.awaited !== "", this.sceneKey = begun.scene_key;
+    this.isLive = true, this.awaited = begun.awaited, this.isHeld = false, this.hasBegun = begun.awaited !== "", this.sceneKey = begun.scene_key;
     // A hand that is not led here leaves the mouse free to look around.
     const { controls } = this.viewer;
     controls.enableZoom = this.awaited !== "";
