@@ -205,9 +205,11 @@ step("views, cutaway and cameras are those of export", async () => {
     slider.dispatchEvent(new Event("input", { bubbles: true }));
   });
   await page.click("#tab-export");
-  await choose("camera", ""); // keys have turned it
-  await studio.quiet(1000);
-  const [, firstCamera] = /--camera (\S+)/.exec(await page.locator("#panel .command code").innerText());
+  const camera = async () => /--camera (\S+)/.exec(await page.locator("#panel .command code").innerText())[1];
+  const turnedCamera = await camera(); // by keys
+  await choose("camera", "");
+  const firstCamera = await until(camera, (seen) => seen !== turnedCamera, 60);
+  assert.notEqual(firstCamera, turnedCamera);
   await choose("view", "spheres");
   await drawing();
   const seen = new Set([await pixels()]);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <time.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -38,50 +39,72 @@ PartClock begun() {
   return clock;
 }
 
-TEST(PartClock, EachPartHasItsOwnProcessorTime) {
-  PartClock clock = begun();
-  work();
-  {
-    const InStage cutting(&clock, Stage::cut);
-    work(), work();
-    const InStage waiting(&clock, Stage::cut_surface);
-    work();
+/// The least that each part took in some ticks alike. What the system does in a thread's name, as answering an
+/// interrupt, adds to that thread's time, in few of them.
+template <class Tick>
+recordings::TickParts least(Tick tick) {
+  recordings::TickParts least = tick();
+  for (int i = 1; i < 5; ++i) {
+    const recordings::TickParts parts = tick();
+    for (double recordings::TickParts::*part :
+         {&recordings::TickParts::solver, &recordings::TickParts::cut, &recordings::TickParts::input,
+          &recordings::TickParts::recorder, &recordings::TickParts::machine})
+      least.*part = std::min(least.*part, parts.*part);
   }
-  work();
-  clock.begin_recording();
-  work();
-  const recordings::TickParts parts = clock.end_tick();
+  return least;
+}
+
+TEST(PartClock, EachPartHasItsOwnProcessorTime) {
+  const recordings::TickParts parts = least([] {
+    PartClock clock = begun();
+    work();
+    {
+      const InStage cutting(&clock, Stage::cut);
+      work(), work();
+      const InStage waiting(&clock, Stage::cut_surface);
+      work();
+    }
+    work();
+    clock.begin_recording();
+    work();
+    const recordings::TickParts parts = clock.end_tick();
+    EXPECT_NEAR(parts.solver + parts.cut + clock.lost_in_step(), clock.step_time(), kResolution);
+    return parts;
+  });
   EXPECT_NEAR(parts.solver, 2 * kWork, kResolution);
   EXPECT_GE(parts.cut, 3 * kWork - kResolution);
   EXPECT_NEAR(parts.recorder, kWork, kResolution);
   EXPECT_LT(parts.input, kWork);
-  EXPECT_NEAR(parts.solver + parts.cut + clock.lost_in_step(), clock.step_time(), kResolution);
 }
 
 TEST(PartClock, TimeWithoutAProcessorIsTheMachines) {
-  PartClock clock = begun();
-  work(), rest();
-  clock.begin_recording();
-  EXPECT_GE(clock.lost_in_step(), kSleep - kResolution);
-  rest();
-  const recordings::TickParts parts = clock.end_tick();
+  const recordings::TickParts parts = least([] {
+    PartClock clock = begun();
+    work(), rest();
+    clock.begin_recording();
+    EXPECT_GE(clock.lost_in_step(), kSleep - kResolution);
+    rest();
+    return clock.end_tick();
+  });
   EXPECT_GE(parts.machine, 2 * kSleep - kResolution);
   EXPECT_NEAR(parts.solver, kWork, kResolution);
   EXPECT_LT(parts.recorder, kWork);
 }
 
 TEST(PartClock, WhoWaitsForAnInputOrACutSleeps) {
-  PartClock clock;
-  clock.begin_tick(PartClock::Clock::now(), PartClock::Clock::now());
-  rest();
-  clock.begin_step();
-  {
-    const InStage waiting(&clock, Stage::cut_surface);
+  const recordings::TickParts parts = least([] {
+    PartClock clock;
+    clock.begin_tick(PartClock::Clock::now(), PartClock::Clock::now());
     rest();
-  }
-  work();
-  clock.begin_recording();
-  const recordings::TickParts parts = clock.end_tick();
+    clock.begin_step();
+    {
+      const InStage waiting(&clock, Stage::cut_surface);
+      rest();
+    }
+    work();
+    clock.begin_recording();
+    return clock.end_tick();
+  });
   EXPECT_GE(parts.input, kSleep - kResolution);
   EXPECT_GE(parts.cut, kSleep - kResolution);
   EXPECT_NEAR(parts.solver, kWork, kResolution) << "and it is not taken from what follows";
