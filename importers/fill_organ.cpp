@@ -60,11 +60,11 @@ Result<Lattice> lay_cells(const CheckedMesh& mesh, double spacing, const FillOpt
   if (expected > 1.2 * double(options.most_spheres) || ny * nz > kMostRows || std::max({nx, ny, nz}) > 1e6) {
     char count[32];
     std::snprintf(count, sizeof count, "%.3g", expected);
-    return Error{
-        "",
-        "about " + std::string(count) + " spheres " + mm_text(spacing) + " apart would be needed; at most " +
-            std::to_string(options.most_spheres) + " are allowed",
-        "take a larger sphere radius, or check the unit of the mesh: it is " + mm_text(norm(extent)) + " across"};
+    return Error{"",
+                 "about " + std::string(count) + " spheres " + mm_text(spacing) + " apart would be needed; at most " +
+                     std::to_string(options.most_spheres) + " are allowed",
+                 "take a larger sphere radius, or check the unit of the mesh: it is " + mm_text(norm(extent)) +
+                     " from corner to corner of its box"};
   }
   return Lattice{0.5 * (mesh.box_least + mesh.box_most) + spacing * shift,
                  spacing,

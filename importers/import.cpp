@@ -40,7 +40,7 @@ std::string range_text(UsualSize usual) { return mm_text(usual.least) + " to " +
 /// Adds a finding if the unit was guessed or the size is unusual.
 void note_unit(const UnitChoice& unit, double unit_of_file, double diagonal, UsualSize usual,
                std::vector<Finding>& findings) {
-  const std::string across = mm_text(diagonal) + " across (usual: " + range_text(usual) + ")";
+  const std::string across = mm_text(diagonal) + " from corner to corner of its box (usual: " + range_text(usual) + ")";
   Finding guess{
       "unit_guessed", 1, {}, "the file does not say its unit", "", "give the unit or the size if that is wrong"};
   if (unit_of_file > 0)
@@ -58,12 +58,13 @@ void note_unit(const UnitChoice& unit, double unit_of_file, double diagonal, Usu
   }
   // The guess used the whole file; this check uses only the parts kept.
   if (diagonal < usual.least || diagonal > usual.most)
-    findings.push_back({"unusual_size",
-                        1,
-                        {},
-                        "the organ is " + mm_text(diagonal) + " across; usual is " + range_text(usual),
-                        "none",
-                        "check the unit"});
+    findings.push_back(
+        {"unusual_size",
+         1,
+         {},
+         "the organ is " + mm_text(diagonal) + " from corner to corner of its box; usual is " + range_text(usual),
+         "none",
+         "check the unit"});
 }
 
 /// Adds a finding if the spheres stand for more or less than the mesh encloses.

@@ -86,7 +86,8 @@ std::shared_ptr<Training> Desk::training() {
   return training_;
 }
 
-void Desk::ready(std::uint32_t number) {
+void Desk::ready(std::uint32_t number, std::uint32_t request) {
+  if (const std::shared_ptr<Stage> found = stage(number)) found->ready(request);
   if (const std::shared_ptr<Training> running = training()) running->ready(number);
 }
 

@@ -48,8 +48,9 @@ class Desk {
   /// Ends it, if one runs, and waits until it is saved.
   void end_training();
 
-  /// The page would draw the next picture of a running session at once; see PicturePace.
-  void ready(std::uint32_t number);
+  /// The page is done with the picture of a request, and would draw the next one at once; of a running session none was
+  /// asked for. See PicturePace, Stage::ready().
+  void ready(std::uint32_t number, std::uint32_t request);
 
   /// Moves the hands of a running session; called from one thread.
   void move(const HandMoves& moves, double sent_s);

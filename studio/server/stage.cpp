@@ -55,6 +55,14 @@ void Stage::show(std::int64_t tick, std::uint32_t request) {
   news_.notify_all();
 }
 
+void Stage::ready(std::uint32_t request) {
+  {
+    const std::lock_guard lock(mutex_);
+    drawn_ = request, follows_page_ = true;
+  }
+  news_.notify_all();
+}
+
 /// See film::full_scale_of().
 Result<double> Stage::full_scale(render::ElementQuantity quantity) {
   {
@@ -155,7 +163,10 @@ bool Stage::is_outdated() {
 void Stage::show(Picture picture, const Wish& wish, bool is_glimpse) {
   const std::lock_guard lock(mutex_);
   if (wish.request != newest_.request || (is_glimpse && !is_replaying_)) return;
-  if (!is_glimpse) is_replaying_ = wants_glimpse_ = false, glimpse_due_ = Clock::time_point::max();
+  if (is_glimpse)
+    glimpsed_ = wish.request;
+  else
+    is_replaying_ = wants_glimpse_ = false, glimpse_due_ = Clock::time_point::max();
   outbox_->show(std::move(picture));
   IdlePause::hold();
   moments_->rest(is_glimpse ? Moments::Rest::replaying : Moments::Rest::none);
@@ -169,7 +180,9 @@ void Stage::wait_for_glimpse(const Wish& wish) {
   wants_glimpse_ = true;
   news_.notify_all();
   news_.wait(lock, [&] { return (!wants_glimpse_ && !is_glancing_) || is_wanted_ || ends_; });
-  news_.wait_for(lock, kDrawing, [&] { return is_wanted_ || ends_; });
+  if (glimpsed_ != wish.request) return;  // there is none of that moment
+  news_.wait_for(lock, follows_page_ ? kDrawing : kUsualDrawing,
+                 [&] { return drawn_ == wish.request || is_wanted_ || ends_; });
 }
 
 /// A long replay of a stage has its turn until what is returned goes away: beside all of them there is a processor for

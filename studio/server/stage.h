@@ -39,6 +39,9 @@ class Stage {
   /// Asks for the State before `tick`, which is moved into the session; a newer request replaces one that waits.
   void show(std::int64_t tick, std::uint32_t request);
 
+  /// The browser is done with the picture of a request, and leaves the processors to what else is to be shown of it.
+  void ready(std::uint32_t request);
+
   /// Draws the replayed pictures that follow here too, beside their frames; without a size no longer. Elements have the
   /// range of colours that a film of all `shown` stages has. Errors: those of plan_drawing(); a damaged session.
   Result<DrawingPlan> draw_as(const DrawingRequest& request, const std::vector<std::shared_ptr<Stage>>& shown);
@@ -49,7 +52,9 @@ class Stage {
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds kPatience{30};  ///< with a replay before a glimpse is shown
-  static constexpr std::chrono::milliseconds kDrawing{60};   ///< of a glimpse, by a browser without a GPU
+  /// The longest that a replay waits for a browser without a GPU to draw a glimpse: one that says when it is done, and
+  /// one that does not.
+  static constexpr std::chrono::milliseconds kDrawing{250}, kUsualDrawing{60};
 
   /// Gives the turn back.
   struct EndTurn {
@@ -92,6 +97,8 @@ class Stage {
   Clock::time_point glimpse_due_ = Clock::time_point::max();  ///< of `newest_`, if it is not replayed before
   bool is_glancing_ = false;                                  ///< a glimpse is on its way
   bool is_replaying_ = false;                                 ///< a request that is not answered yet
+  std::uint32_t glimpsed_ = 0, drawn_ = 0;                    ///< requests: of the last glimpse, of what was drawn last
+  bool follows_page_ = false;                                 ///< the page says what it has drawn
   std::optional<DrawingPlan> plan_;                           ///< nothing is drawn before the first one
   bool is_plan_new_ = false;                                  ///< the replay does not follow it yet
   std::map<render::ElementQuantity, double> full_scales_;     ///< of a film of this session alone

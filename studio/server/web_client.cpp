@@ -88,7 +88,8 @@ void WebClient::take(const std::string& text) {
     services_.leading.go_on(), services_.is_led = true;
   } else if (std::optional<Parameters> ready = message->object_if("ready")) {
     const std::uint32_t stage = std::uint32_t(ready->number("stage", 0, Desk::kMostStages - 1));
-    if (message->errors().empty()) desk_->ready(stage);
+    const std::optional<double> request = ready->number_if("request", 0, 4e9);
+    if (message->errors().empty()) desk_->ready(stage, std::uint32_t(request.value_or(0)));
   } else if (const std::optional<double> id = message->number_if("cancel", 0, 9e15)) {
     if (const auto it = calls_.find(std::int64_t(*id)); it != calls_.end()) *it->second = true;
   } else {

@@ -38,11 +38,17 @@ async function download(connection: Connection, path: string): Promise<void> {
   setTimeout(() => URL.revokeObjectURL(link.href), kKept);
 }
 
+/** What a film is called unless something else is chosen: beside the session, a trainee's beside an expert's after both. */
+function filmName(path: string, beside: string | undefined): string {
+  const stem = (file: string) => file.replace(/\.ctpm$/, "");
+  return `${beside === undefined ? stem(path) : `${stem(beside)}-beside-${stem(path).replace(/^.*\//, "")}`}.mp4`;
+}
+
 /** A video of what is seen. */
 export function ExportForm({ connection, player, look }: { connection: Connection; player: Player; look: Look }) {
   const { session } = player.tracks.get(0)!;
   const beside = player.tracks.get(1)?.session.path;
-  const [output, setOutput] = useState(() => session.path.replace(/\.ctpm$/, "") + ".mp4");
+  const [chosenOutput, setOutput] = useState<string | null>(null), output = chosenOutput ?? filmName(session.path, beside);
   const [from, setFrom] = useState("0"), [to, setTo] = useState("");
   const [speed, setSpeed] = useState("1"), [fps, setFps] = useState("30");
   const [size, setSize] = useState(kSizes[0]), [overlay, setOverlay] = useState("full"), [chosenAlign, setAlign] = useState<string | null>(null);
@@ -128,14 +134,16 @@ export function ExportForm({ connection, player, look }: { connection: Connectio
       </div>
       <p class="hint">What happens is told in the picture unless the overlay is none, and in an .mp4 as subtitles and chapters too.</p>
       {session.info.physics_remark && tick("even if the replay differs, marked on every frame", isDifferentShown, showDifferent)}
-      {progress ? <Working what="exporting" done={progress[0]} total={progress[1]} onCancel={() => stop.current?.abort()} />
-        : <button type="button" class="main" disabled={!output} onClick={() => void start()}>Export</button>}
-      <Problems error={error} />
-      {result && (
-        <p class="good" role="status">{result.path}: {result.frames} frames, {result.codec}, {bytes(result.bytes)}, in {seconds(result.elapsed_s, 1)}; replay {result.same_as_recorded ? "same as recorded" : "DIFFERS"}{result.note && `; ${result.note}`}</p>
-      )}
-      {result && <button type="button" onClick={() => download(connection, result.path).catch(setError)}>Download {result.path.replace(/^.*\//, "")}</button>}
       <ShownCommand text={shown} />
+      <div class="always-seen">
+        {progress ? <Working what="exporting" done={progress[0]} total={progress[1]} onCancel={() => stop.current?.abort()} />
+          : <button type="button" class="main" disabled={!output} onClick={() => void start()}>Export</button>}
+        <Problems error={error} />
+        {result && (
+          <p class="good" role="status">{result.path}: {result.frames} frames, {result.codec}, {bytes(result.bytes)}, in {seconds(result.elapsed_s, 1)}; replay {result.same_as_recorded ? "same as recorded" : "DIFFERS"}{result.note && `; ${result.note}`}</p>
+        )}
+        {result && <button type="button" onClick={() => download(connection, result.path).catch(setError)}>Download {result.path.replace(/^.*\//, "")}</button>}
+      </div>
     </Section>
   );
 }

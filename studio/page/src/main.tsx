@@ -17,7 +17,7 @@ function readPlace(): { room: Room; place: Place } {
 }
 
 function writePlace(room: Room, place: Place): void {
-  history.replaceState(null, "", `#${hashOf(room, place)}`);
+  history.replaceState(history.state, "", `#${hashOf(room, place)}`);
 }
 
 let token = takeToken();
@@ -58,11 +58,23 @@ function App() {
   useEffect(list, [connection, room]);
   const reviewed = useRef<Place>({}); // what was in review last, for whoever looks into another room
   const keepReviewed = (there: Place) => (reviewed.current = there, writePlace("review", there));
-  const go = (to: Room, there: Place) => {
+  const show = (to: Room, there: Place) => {
     setPlace(there);
     setRoom(to);
+  };
+  const go = (to: Room, there: Place) => {
+    if (to !== room) history.pushState(null, "", location.hash); // Back leads to the room before
+    show(to, there);
     writePlace(to, there);
   };
+  useEffect(() => {
+    const back = () => {
+      const { room, place } = readPlace();
+      show(room, place);
+    };
+    addEventListener("popstate", back);
+    return () => removeEventListener("popstate", back);
+  }, []);
 
   return (
     <>
@@ -91,7 +103,7 @@ function App() {
         ) : isClosed ? (
           <Empty title={connection ? "The studio has ended" : "This address is of another run"}>
             <p>{connection ? "Start it again" : "Open the address that the program printed, or start it"}: <code>{command("studio", listing?.folder)}</code>. Where its address is opened, here or in
-              another tab, this page goes on. Scenes that were not saved are kept as drafts, and a session that was being recorded is there up to its last whole second: <code>ctpm recover</code></p>
+              another tab, this page goes on. Scenes that were not saved are kept as drafts, and a session that was being recorded is there up to its last whole second: <code>{command("recover", "SESSION.ctpm", "-o", "saved.ctpm")}</code></p>
           </Empty>
         ) : connection && listing ? (
           room === "review" ? (

@@ -1,7 +1,7 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
-import type { Player } from "./player";
+import type { Player, Track } from "./player";
 import type { SessionEvent } from "./protocol";
 import { behind, command, millimetres, newtons, seconds, tickRows } from "./text";
 
@@ -11,6 +11,27 @@ export function shownEvents(events: SessionEvent[]): SessionEvent[] {
 }
 
 export type ShownFrame = { force: number[]; depth: number; contacts: number; severed: number; isSame: boolean; isGlimpse: boolean; missed: number; tick: number; tool: number; second: { force: number[]; depth: number; tool: number } | null } | null;
+
+/** What happened in a session, each at a press. */
+function Events({ player, track: { stage, session: { info } } }: { player: Player; track: Track }) {
+  return (
+    <Section title={player.tracks.size < 2 ? "Events" : stage === 0 ? "Events, expert" : "Events, trainee"}>
+      <ul class="jumps">
+        {shownEvents(info.events).map((event, i) => {
+          const time = event.tick * info.tick_s;
+          return (
+            <li key={i}>
+              <button type="button" onClick={() => player.move(stage === 0 ? time : player.firstAt(time))}>
+                <span class="number">{seconds(time)}</span> {event.text}
+              </button>
+            </li>
+          );
+        })}
+      </ul>
+      {info.events.length === 0 && <p class="hint">Nothing was touched in this session.</p>}
+    </Section>
+  );
+}
 
 /** The moment that is shown, in numbers, and the session that it is of. */
 export function Moment({ connection, player, frame, other }: { connection: Connection; player: Player; frame: ShownFrame; other: ShownFrame }) {
@@ -53,18 +74,7 @@ export function Moment({ connection, player, frame, other }: { connection: Conne
           ["replayed after", player.replayedAfter === null ? "…" : `${player.replayedAfter.toFixed(0)} ms`]]} />
       </Section>
       {other && <Section title="Trainee"><Readings rows={rows(other, 1)} /></Section>}
-      <Section title="Events">
-        <ul class="jumps">
-          {shownEvents(info.events).map((event, i) => (
-            <li key={i}>
-              <button type="button" onClick={() => player.move(event.tick * info.tick_s)}>
-                <span class="number">{seconds(event.tick * info.tick_s)}</span> {event.text}
-              </button>
-            </li>
-          ))}
-        </ul>
-        {info.events.length === 0 && <p class="hint">Nothing was touched in this session.</p>}
-      </Section>
+      {[...player.tracks.values()].map((track) => <Events key={track.stage} player={player} track={track} />)}
       <Section title="Session">
         <Readings rows={[
           ["recorded", info.created_utc.replace("T", " ").replace("Z", " UTC") || "its time of day was taken out"],

@@ -9,7 +9,7 @@ import { seconds } from "./text";
 /** Notes at moments of a session, kept in a file beside it. */
 export function NotesPanel({ connection, player, onNotes }: { connection: Connection; player: Player; onNotes: (notes: Note[], stage: number) => void }) {
   const second = player.tracks.get(1)?.session.path;
-  const [wanted, setWanted] = useState(0);
+  const [wanted, setWanted] = useState(1); // of a pair: what is reviewed is the trainee's
   const stage = second ? wanted : 0, { path, info } = player.tracks.get(stage)!.session;
   const time = player.timeOf(stage), isIn = time >= 0 && time <= info.duration_s;
   const [notes, setNotes] = useState<Notes | null>(null);

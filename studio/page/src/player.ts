@@ -67,6 +67,9 @@ export class Player {
 
   constructor(private readonly connection: Connection, readonly viewer: Viewer) {
     for (const stage of [0, 1]) connection.onStage(stage, (message) => this.take(stage, message));
+    viewer.onReady = () => {
+      for (const [stage, { scene }] of this.tracks) if (scene.frame) connection.send({ ready: { stage, request: scene.frame.request } });
+    };
   }
 
   /** Opens the session beside. */

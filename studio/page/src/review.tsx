@@ -182,12 +182,13 @@ export function Review({ connection, listing, place, onPlace }: {
 
   const marks = useMemo<Mark[]>(() => {
     if (!first) return [];
-    const { events, tick_s } = first.session.info;
+    const of = (stage: number, own: number, kind: string, text: string): Mark =>
+      ({ stage, time: stage === 0 ? own : player!.firstAt(own), kind, title: `${seconds(own)} ${text}` });
     return [
-      ...shownEvents(events).map((e) => ({ time: e.tick * tick_s, kind: e.kind, text: e.text })),
-      ...notes.list.map((note) => ({ time: notes.stage === 0 ? note.time_s : player!.firstAt(note.time_s), kind: "note", text: note.text })),
+      ...[...player!.tracks.values()].flatMap(({ stage, session: { info } }) => shownEvents(info.events).map((e) => of(stage, e.tick * info.tick_s, e.kind, e.text))),
+      ...notes.list.map((note) => of(notes.stage, note.time_s, "note", note.text)),
     ];
-  }, [first, notes, version]);
+  }, [first, second, notes, version]);
 
   return (
     <div class="room review">

@@ -8,6 +8,11 @@ const kApart = 0.05; // of two numbers at least, in widths of the axis
 
 const kWhose = ["expert", "trainee"];
 
+/** Of two sessions, whose it is. */
+export function Whose({ stage }: { stage: number }) {
+  return <span class={`whose ${stage === 0 ? "first" : "second"}`}>{kWhose[stage]}</span>;
+}
+
 /** The step of an axis that is so long [s]. */
 export function stepOf(length: number): number {
   const rough = length / kNumbers, power = 10 ** Math.floor(Math.log10(rough));

@@ -3,12 +3,13 @@ import uPlot from "uplot";
 import type { Player } from "./player";
 import type { TimelineData } from "./protocol";
 import { seconds } from "./text";
-import { alignedText, TimeAxes } from "./time_axis";
+import { alignedText, TimeAxes, Whose } from "./time_axis";
 
 export interface Mark {
+  stage: number;
   time: number; // of stage 0 [s]
   kind: string;
-  text: string;
+  title: string; // with the time of its own session
 }
 
 interface Row {
@@ -195,12 +196,15 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
 
   return (
     <div class="timeline" role="group" aria-label="Timeline">
-      <div class="marks" aria-hidden="true">
-        {marks.filter((mark) => mark.time >= from && mark.time <= to).map((mark, i) => (
-          <button key={i} type="button" tabIndex={-1} class={`mark ${mark.kind.replaceAll(" ", "-")}`} title={`${seconds(mark.time)} ${mark.text}`}
-            style={{ "--at": String(shareOf(mark.time)) }} onClick={() => player.move(mark.time)} />
-        ))}
-      </div>
+      {[...player.tracks.keys()].sort().map((stage) => (
+        <div key={stage} class="marks" aria-hidden="true">
+          {player.tracks.has(1) && <Whose stage={stage} />}
+          {marks.filter((mark) => mark.stage === stage && mark.time >= from && mark.time <= to).map((mark, i) => (
+            <button key={i} type="button" tabIndex={-1} class={`mark ${mark.kind.replaceAll(" ", "-")}`} title={mark.title}
+              style={{ "--at": String(shareOf(mark.time)) }} onClick={() => player.move(mark.time)} />
+          ))}
+        </div>
+      ))}
       <div class="plots" onPointerDown={grab} onPointerMove={drag} onWheel={wheel}>
         <div ref={box} />
         <div ref={head} class="playhead" hidden={player.time < from || player.time > to} />

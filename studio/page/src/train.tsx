@@ -34,10 +34,12 @@ function placeRing(ring: HTMLElement | null, trainer: Trainer): void {
 
 type Phase = "choose" | "loading" | "running" | "ended";
 
-/** A name for a session that does not exist yet: mine-1.ctpm ... */
-function freeName(listing: Listing): string {
-  const taken = new Set(listing.sessions.map((s) => s.path));
-  for (let i = 1; ; ++i) if (!taken.has(`mine-${i}.ctpm`)) return `mine-${i}.ctpm`;
+const kUsualName = "mine-1.ctpm";
+
+/** A name for a session that does not exist yet: that name, or with the next number. */
+function freeName({ sessions }: Listing, name: string): string {
+  const taken = new Set(sessions.map(({ path }) => path)), stem = name.replace(/(-\d+)?\.ctpm$/, "");
+  for (let i = 1, free = name; ; free = `${stem}-${++i}.ctpm`) if (!taken.has(free)) return free;
 }
 
 export function Train({ connection, listing, tryScene, tryText, tryView, onReview, onAuthor, onChanged }: {
@@ -54,7 +56,8 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
   const [trainer, setTrainer] = useState<Trainer | null>(null);
   const [phase, setPhase] = useState<Phase>("choose");
   const [scene, setScene] = useState("");
-  const [output, setOutput] = useState(() => (tryScene ? "" : freeName(listing)));
+  const [chosenName, setChosenName] = useState<string | null>(tryScene ? "" : null); // null: the page's; empty: nothing is recorded
+  const [output, setOutput] = useState(""); // the session that is recorded; empty: none
   const [expert, setExpert] = useState("");
   const [device, setDevice] = useState(storedDevice), [waits, setWaits] = useState("");
   const [ended, setEnded] = useState<EndedTraining | null>(null);
@@ -99,13 +102,17 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
     };
   }, [connection]);
 
-  const begin = useCallback(async (path: string) => {
+  /** `like`: the session before, of which this one's name differs by its number. */
+  const begin = useCallback(async (path: string, like?: string) => {
     if (!trainer) return;
     setScene(path), setError(null), setEnded(null), setWaits(""), setPhase("loading");
     storeDevice(device);
     loading.current = new AbortController();
     try {
-      await trainer.begin(path, path === tryScene && !output ? tryText : undefined, output || undefined,
+      // Somebody else may have taken a name meanwhile.
+      const free = like || (chosenName === null && kUsualName), name = free ? freeName(await connection.call<Listing>("folder.list"), free) : chosenName!;
+      setOutput(name);
+      await trainer.begin(path, path === tryScene && !name ? tryText : undefined, name || undefined,
         path === tryScene ? undefined : deviceParameters(device), path === tryScene ? tryView : undefined, loading.current.signal);
       setPhase("running");
       canvas.current?.focus();
@@ -113,7 +120,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
       setError(failure as Error);
       setPhase("choose");
     }
-  }, [trainer, output, device, tryScene, tryText, tryView]);
+  }, [trainer, chosenName, device, tryScene, tryText, tryView]);
 
   useEffect(() => {
     if (trainer && tryScene) void begin(tryScene);
@@ -207,11 +214,10 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
     if (event.pointerType === "mouse") void Promise.resolve(canvas.current?.requestPointerLock?.()).catch(() => {});
   };
 
-  const again = () => {
+  const choose = () => {
     trainer?.clear();
-    setOutput(freeName(listing));
-    setPhase("choose");
-    setEnded(null);
+    setChosenName(tryScene ? null : chosenName && freeName(listing, chosenName));
+    setPhase("choose"), setScene(""), setEnded(null);
   };
   const frame = trainer?.scene?.frame ?? null, view = trainer?.scene?.view ?? null;
   const hands = frame?.second ? [frame, frame.second] : frame ? [frame] : [];
@@ -301,11 +307,11 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
           <Section title="Session">
             <label class="field">
               <span>record as (empty: nothing is recorded)</span>
-              <input value={output} disabled={phase === "loading"} onInput={(e) => setOutput(e.currentTarget.value)} />
+              <input value={phase === "loading" ? output : chosenName ?? freeName(listing, kUsualName)} disabled={phase === "loading"} onInput={(e) => setChosenName(e.currentTarget.value)} />
             </label>
             <DeviceForm choice={device} onChoice={setDevice} isDisabled={phase === "loading"} />
             <ExpertChoice listing={listing.sessions} expert={expert} onExpert={setExpert} use="shown as a ghost" />
-            {device.how && output && <ShownCommand text={command("record", scene || "SCENE.json", "-o", output, ...deviceWords(device))} />}
+            {device.how && chosenName !== "" && <ShownCommand text={command("record", scene || "SCENE.json", "-o", chosenName ?? freeName(listing, kUsualName), ...deviceWords(device))} />}
             {phase === "loading" && <button type="button" onClick={() => loading.current?.abort()}>Cancel</button>}
           </Section>
         )}
@@ -353,7 +359,8 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
           </>
         )}
         {phase === "ended" && ended && (
-          <Ended connection={connection} listing={listing} ended={ended} expert={expert} onExpert={setExpert} onReview={onReview} onAgain={again} onAuthor={tryScene ? onAuthor : null} />
+          <Ended connection={connection} listing={listing} ended={ended} expert={expert} onExpert={setExpert} onReview={onReview}
+            onAgain={() => void begin(scene, output)} onChoose={choose} onAuthor={tryScene ? onAuthor : null} />
         )}
       </aside>
     </div>
@@ -373,7 +380,7 @@ function ExpertChoice({ listing, expert, onExpert, use }: { listing: Listing["se
 }
 
 /** What became of a session: its numbers, its verdict, and how it compares with the expert's. */
-function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain, onAuthor }: {
+function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain, onChoose, onAuthor }: {
   connection: Connection;
   listing: Listing;
   ended: EndedTraining;
@@ -381,6 +388,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
   onExpert: (path: string) => void;
   onReview: (place: Place) => void;
   onAgain: () => void;
+  onChoose: () => void; // of another scene
   onAuthor: (() => void) | null;
 }) {
   const [verdict, setVerdict] = useState<{ same: boolean; text: string } | null>(null);
@@ -448,6 +456,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
           ]} />
         )}
         <button type="button" onClick={onAgain}>Train again</button>
+        <button type="button" onClick={onChoose}>Choose a scene</button>
         {onAuthor && <button type="button" onClick={onAuthor}>Back to Author</button>}
         {path && <button type="button" onClick={() => onReview({ session: path, time: 0 })}>Open in Review</button>}
       </Section>

@@ -76,7 +76,7 @@ async function lead(scene) {
   console.log(`${scene}: ${(pictures / kSeconds).toFixed(1)} pictures a second, ${((1e3 * time) / pictures).toFixed(2)} ms of the main thread each; `
     + `pose to tick: half ${await row("half of the poses")}, 99 of 100 ${await row("99 of 100 poses")}, ${await row("within 5 ms")} within 5 ms; `
     + `tick to picture p50, p95 ${(await fromTicks()).join(", ")} ms; ${await row("late steps")} late steps`);
-  await page.click("button:has-text('Train again')");
+  await page.click("button:has-text('Choose a scene')");
 }
 
 for (let round = 0; round < rounds; ++round) for (const scene of ["kidney", "egg"]) await lead(scene);

@@ -43,7 +43,7 @@ step("the mouse leads one of two hands, and the other one stays", async () => {
   assert.deepEqual(await seriousFindings(page), []);
   await end(page);
   verdicts.push(ctpmBeside(folder, "verify", "two.ctpm"));
-  await page.click("button:has-text('Train again')");
+  await page.click("button:has-text('Choose a scene')");
 });
 
 step("the expert's ghost is ahead, or at the same place of its path", async () => {
@@ -119,7 +119,7 @@ step("the expert's ghost is ahead, or at the same place of its path", async () =
   assert.ok(atSame.count > 200 && atLater.count > 200, `${atSame.count} and ${atLater.count} pixels`);
   assert.ok(atLater.lowest > atSame.lowest + 5, `${atSame.lowest} and ${atLater.lowest}`);
   await end(page);
-  await page.click("button:has-text('Train again')");
+  await page.click("button:has-text('Choose a scene')");
 });
 
 step("a gamepad leads the tool: the trigger presses, the shoulder changes it", async () => {
@@ -171,7 +171,7 @@ step("a gamepad leads the tool: the trigger presses, the shoulder changes it", a
 });
 
 step("a device leads, and the page looks on", async () => {
-  await page.click("button:has-text('Train again')");
+  await page.click("button:has-text('Choose a scene')");
   const field = await chooseDevice(page, "device.ctpm");
   await field("tool in the hand").locator("input").fill("saw");
   assert.match(await page.locator("aside .command code").innerText(), /-o device\.ctpm --igtl-listen 0 --device-offset-mm 0 0 75 --device-tool saw$/);
@@ -202,7 +202,7 @@ step("a device leads, and the page looks on", async () => {
   assert.ok(device.felt() > 0.02, `the device felt ${device.felt()} N`);
   verdicts.push(ctpmBeside(folder, "verify", "device.ctpm"));
   // The next time the page leads again, unless it is chosen anew.
-  await page.click("button:has-text('Train again')");
+  await page.click("button:has-text('Choose a scene')");
   await field("in the hand").locator("select").selectOption("");
   await page.click(".list button:has-text('kidney')");
   await page.waitForSelector(".view.running");
@@ -210,7 +210,7 @@ step("a device leads, and the page looks on", async () => {
 });
 
 step("a recording is there up to the moment when the program was killed", async () => {
-  await page.click("button:has-text('Train again')");
+  await page.click("button:has-text('Choose a scene')");
   await begin(page, "kidney", "killed.ctpm");
   const middle = await takeUp(page);
   await moveMouse(page, middle, { x: 0, y: 150 }, 60);
@@ -268,7 +268,7 @@ step("on a tablet one finger moves the tool, two look around, and buttons do wha
   await picture(page, "train-tablet");
   await tap("button:text-is('End')");
   await page.waitForSelector("button:has-text('Train again')");
-  await tap("button:has-text('Train again')");
+  await tap("button:has-text('Choose a scene')");
   await input.send("Emulation.setTouchEmulationEnabled", { enabled: false });
 });
 

@@ -146,6 +146,20 @@ step("what chooses a panel stays while it is scrolled", async () => {
   await page.locator("#panel").evaluate((panel) => void (panel.scrollTop = 0));
 });
 
+step("what happened in each session is marked at its place, and listed", async () => {
+  await page.click("#tab-moment");
+  const rows = await page.locator(".marks").evaluateAll((all) => all.map((row) => [...row.querySelectorAll(".mark")].map(({ title }) => title)));
+  const lists = await page.locator("#panel section:has(h2:has-text('Events'))").evaluateAll((all) => all.map((list) => [...list.querySelectorAll("li")].map(({ textContent }) => textContent)));
+  const told = [expert, clumsy].map(({ events, tick_s }) => events.filter(({ kind }) => kind !== "late tick").map(({ tick, text }) => `${(tick * tick_s).toFixed(3)} s ${text}`));
+  assert.ok(told.every((each) => each.length > 2));
+  assert.deepEqual(lists, told);
+  assert.deepEqual(rows, told);
+  // A press on the trainee's goes to its own moment.
+  await page.locator("#panel section:has(h2:has-text('trainee')) li button").last().click();
+  await page.waitForFunction((time) => document.querySelector(".clock-beside").textContent.startsWith(time), told[1].at(-1).split(" ")[0]);
+  await page.click("#tab-compare");
+});
+
 step("each session has its own clock and its own axis, below each other where they belong together", async () => {
   const axis = (whose) => page.locator(`.axis.of-${whose} .times span`).evaluateAll((all) => all.map((mark) => [Number.parseFloat(mark.textContent), Number(mark.style.getPropertyValue("--at"))]));
   const clocks = () => page.locator(".clock, .clock-beside").allInnerTexts();
@@ -296,6 +310,8 @@ step("notes stay, and a link leads to the moment", async () => {
   const session = readFileSync(join(folder, kExpert));
   await page.click("#panel button:has-text('first contact')");
   await page.click("#tab-notes");
+  assert.equal(await page.locator("#panel select").inputValue(), "1", "what is reviewed is the trainee's");
+  await page.locator("#panel select").selectOption(kExpert);
   await page.locator(".view > canvas").focus();
   await page.keyboard.press("Home");
   for (let i = 0; i < 20; ++i) await page.keyboard.press("Shift+ArrowRight");
@@ -345,6 +361,9 @@ step("an export is the one that the shown command makes, and can be cancelled", 
   await page.waitForSelector("#panel button[aria-pressed=true]:text-is('first contact')");
   await page.click("#tab-export");
   assert.match(await page.locator("#panel .command code").innerText(), /--align contact/);
+  assert.equal(await field("file in the folder").inputValue(), `${kClumsy.replace(".ctpm", "")}-beside-${kExpert.replace(".ctpm", "")}.mp4`);
+  const press = await page.locator("#panel button.main").boundingBox();
+  assert.ok(press.y + press.height <= page.viewportSize().height, `what exports is seen without scrolling: ${JSON.stringify(press)}`);
   // It is seen as it is here, unless the command is to choose.
   assert.match(await page.locator("#panel .command code").innerText(), / --camera [-\d.]+,[-\d.]+,[-\d.]+:[-\d.]+,[-\d.]+,[-\d.]+(:| |$)/);
   await choose("camera", "");

@@ -246,7 +246,7 @@ step("the shown commands verify and record do what the buttons did", async () =>
   await page.locator("aside .field:has-text('to compare with') select").selectOption(kExpert);
   assert.deepEqual(await commands(), [verify, `ctpm compare ${kExpert} arrow.ctpm -o report`]);
 
-  await page.click("button:has-text('Train again')");
+  await page.click("button:has-text('Choose a scene')");
   const field = await chooseDevice(page, "device.ctpm");
   await page.click(".list button:has-text('kidney'):not(:has-text('cut'))");
   await page.waitForSelector(".view.running .empty:has-text('aiting for a device on 127.0.0.1:')");
@@ -262,7 +262,7 @@ step("the shown commands verify and record do what the buttons did", async () =>
   await page.keyboard.press("Escape");
   await page.waitForSelector("button:has-text('Train again')");
   ofPage.close();
-  await page.click("button:has-text('Train again')");
+  await page.click("button:has-text('Choose a scene')");
   await page.locator("aside input").first().fill("command.ctpm");
   const [record] = await commands();
   assert.match(record, /^ctpm record kidney\.json -o command\.ctpm /);

@@ -61,7 +61,7 @@ step("names in a scene are text", async () => {
   await page.waitForSelector("button:has-text('Train again')");
   assert.equal(await page.locator("main img").count(), 0);
   // In the other rooms too: lists, handles and fields of a scene, captions and panels of its session.
-  await page.click("button:has-text('Train again')");
+  await page.click("button:has-text('Choose a scene')");
   await begin(page, "html", "html.ctpm");
   await takeUpByKeys(page);
   await page.waitForTimeout(300);
@@ -132,7 +132,7 @@ step("the wheel moves the tool away from the viewer, and the pointer slows as th
   }
   await end(page);
   wheel = { start, replayed: ctpmBeside(folder, "replay", "wheel.ctpm", "--csv", "wheel.csv") };
-  await page.click("button:has-text('Train again')");
+  await page.click("button:has-text('Choose a scene')");
 });
 
 step("a session begins when the tool is taken up: what comes before is in no time of it", async () => {
@@ -183,7 +183,16 @@ step("a session begins when the tool is taken up: what comes before is in no tim
   await end(page);
   const lasted = JSON.parse(ctpm(folder, "info", "late.ctpm", "--json").out).duration_s;
   assert.ok(lasted > 0.2 && lasted < (Date.now() - began) / 1e3, `${lasted} s`);
+  // Again is the same scene, under the next name, which nobody has taken meanwhile.
+  copyFileSync(join(folder, "late.ctpm"), join(folder, "late-2.ctpm"));
   await page.click("button:has-text('Train again')");
+  await page.waitForSelector(".view.running .take-up");
+  assert.equal((await page.locator(".recorded").textContent()).trim(), "records late-3.ctpm");
+  await takeUpByKeys(page);
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 0.1);
+  await end(page);
+  assert.equal(JSON.parse(ctpm(folder, "info", "late-3.ctpm", "--json").out).scene, JSON.parse(ctpm(folder, "info", "late.ctpm", "--json").out).scene);
+  await page.click("button:has-text('Choose a scene')");
 });
 
 step("the pointer takes the tool up where it is, and carries nothing along from where it came in", async () => {
@@ -235,7 +244,7 @@ step("the pointer takes the tool up where it is, and carries nothing along from 
   assert.ok(far > 1e-3 && far < 15e-3, `${far}`);
   await page.evaluate(() => document.exitPointerLock());
   await end(page);
-  await page.click("button:has-text('Train again')");
+  await page.click("button:has-text('Choose a scene')");
 });
 
 step("the tool was where the wheel led the hand, until the tissue turned it aside", async () => {

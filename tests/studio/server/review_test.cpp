@@ -11,37 +11,26 @@
 #include "core/contact/drawn_surfaces.h"
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
-#include "studio/compare/compare_files.h"
 #include "studio/film/reel.h"
 #include "studio/film/session_film.h"
 #include "studio/render/renderer.h"
 #include "studio/views/look.h"
 #include "studio/views/view_of_scene.h"
 #include "tests/studio/commands/running_program.h"
+#include "tests/studio/server/reviewing.h"
 #include "tests/studio/server/serving.h"
 
 namespace ctpm {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::kCut, testing::kPress;
+using testing::Reviewing;
 using testing::Serving;
 using testing::SocketClient;
 using testing::value_at;
 
 constexpr std::size_t kFrameHead = 128;
-
-const std::string kPress = "liver-press-expert.ctpm", kCut = "kidney-cut-expert.ctpm";
-
-class Reviewing : public ::testing::Test {
- protected:
-  Reviewing() {
-    for (const std::string& name : {kPress, kCut})
-      fs::copy(fs::path(CTPM_SHIPPED_SESSIONS) / name, folder_.path() / name);
-  }
-  std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
-
-  testing::TemporaryFolder folder_;
-};
 
 std::string frame_of(SocketClient& client, std::int64_t tick, std::uint32_t request) {
   client.send({{"show", {{"stage", 0}, {"tick", tick}, {"request", request}}}});
@@ -145,6 +134,27 @@ TEST_F(Reviewing, TrianglesComeBeforeTheirFrameAndOnlyWhenACutChangedThem) {
   }
 }
 
+TEST_F(Reviewing, TheReplayFollowsAGlimpseWhetherOrNotThePageSaysThatItIsDrawn) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  client.call("session.open", {{"path", kPress}, {"stage", 0}});
+  std::uint32_t request = 0;
+  int glimpses = 0;
+  // A page that never says it, one that does, and one that no longer does, as if it were hidden.
+  for (const auto& [tick, says_so] : {std::pair{1720, false}, std::pair{2720, true}, std::pair{820, false}}) {
+    client.send({{"show", {{"stage", 0}, {"tick", tick}, {"request", ++request}}}});
+    std::string frame = client.any_frame();
+    if (SocketClient::is_glimpse(frame)) {
+      ++glimpses;
+      if (says_so) client.send({{"ready", {{"stage", 0}, {"request", request}}}});
+      frame = client.frame();
+    }
+    EXPECT_EQ(value_at<std::uint32_t>(frame, 16), request);
+    EXPECT_EQ(value_at<double>(frame, 32), double(tick));
+  }
+  EXPECT_GT(glimpses, 0);
+}
+
 TEST_F(Reviewing, AGlimpseIsAtTheRecordedPoseAndTheReplayFollows) {
   const Serving serving(folder_.path());
   SocketClient client(serving);
@@ -218,90 +228,6 @@ TEST_F(Reviewing, TimelineInfoAndComparisonAreThoseOfTheCommands) {
   const nlohmann::json verdict = client.call("session.verify", {{"path", kCut}})["result"];
   const testing::ProgramOutcome verify = testing::run_ctpm({"verify", kCut}, folder_.path());
   EXPECT_NE(verify.out.find(verdict["text"].get<std::string>()), std::string::npos) << verify.out;
-}
-
-TEST_F(Reviewing, AComparisonSaysHowFarItIsAndCanBeStopped) {
-  const Serving serving(folder_.path());
-  SocketClient client(serving);
-  nlohmann::json at;
-  const nlohmann::json answer = testing::stopped(client, "session.compare", {{"expert", kCut}, {"trainee", kCut}}, &at);
-  EXPECT_NE(answer["errors"].dump().find("stopped"), std::string::npos) << answer;
-  const nlohmann::json verdict = testing::stopped(client, "session.verify", {{"path", kPress}});
-  EXPECT_NE(verdict["errors"].dump().find("stopped"), std::string::npos) << verdict;
-  EXPECT_EQ(at["total"], 2 * recordings::SessionReader::open(file(kCut))->tick_count());
-  EXPECT_LT(at["done"], at["total"]);
-
-  std::vector<std::int64_t> told;
-  compare::CompareFilesOptions options;
-  options.progress = [&](std::int64_t done, std::int64_t) { told.push_back(done); };
-  ASSERT_TRUE(compare::compare_files(*compare::open_files(file(kCut), file(kCut)), options));
-  EXPECT_GT(told.size(), 1000u);
-  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
-  EXPECT_EQ(told.back(), at["total"]);
-}
-
-TEST_F(Reviewing, AComparisonKnowsWhatWasVerifiedUntilTheFileChanges) {
-  // Longer than sessions that a comparison replays whole.
-  std::ofstream(file("long.json")) << R"({"format": "ctpm-script", "version": 1, "steps": [
-    {"take": {"tool": "ball", "at_mm": [0, 0, 75]}}, {"move": {"to_mm": [0, 0, 70], "speed_mm_per_s": 10}},
-    {"wait_s": 31}, {"put_away": true}]})";
-  const std::string scene = std::string(CTPM_SOURCE_DIR) + "/scenes/kidney.json";
-  const testing::ProgramOutcome recorded =
-      testing::run_ctpm({"record", scene, "--script", "long.json", "-o", "long.ctpm", "--fast"}, folder_.path());
-  ASSERT_EQ(recorded.code, 0) << recorded.err;
-  fs::copy(file("long.ctpm"), file("other.ctpm"));
-  const Serving serving(folder_.path());
-  SocketClient client(serving);
-  const auto doubts = [&] {
-    const nlohmann::json answer = client.call("session.compare", {{"expert", "long.ctpm"}, {"trainee", "other.ctpm"}});
-    std::vector<std::string> found;
-    for (const nlohmann::json& remark : answer["result"]["remarks"])
-      if (const std::string text = remark; text.find("was not replayed for this comparison") != std::string::npos)
-        found.push_back(text.substr(0, text.find(' ')));
-    return found;
-  };
-  using Names = std::vector<std::string>;
-  EXPECT_EQ(doubts(), (Names{"long.ctpm", "other.ctpm"}));
-  ASSERT_EQ(client.call("session.verify", {{"path", "other.ctpm"}})["result"]["same"], true);
-  EXPECT_EQ(doubts(), Names{"long.ctpm"});
-  ASSERT_EQ(client.call("session.verify", {{"path", "long.ctpm"}})["result"]["same"], true);
-  EXPECT_EQ(doubts(), Names{});
-  // Written to since: of another time, and of the same one but longer.
-  const fs::file_time_type time = fs::last_write_time(file("other.ctpm"));
-  fs::last_write_time(file("other.ctpm"), time + std::chrono::seconds(1));
-  EXPECT_EQ(doubts(), Names{"other.ctpm"});
-  fs::last_write_time(file("other.ctpm"), time);
-  EXPECT_EQ(doubts(), Names{});
-  std::ofstream(file("other.ctpm"), std::ios::app) << std::string(4096, '\0');
-  fs::last_write_time(file("other.ctpm"), time);
-  EXPECT_EQ(doubts(), Names{"other.ctpm"});
-}
-
-TEST_F(Reviewing, SessionsOfDifferentScenesAreToldApart) {
-  const Serving serving(folder_.path());
-  SocketClient client(serving);
-  const auto ask = [&](const std::string& trainee) {
-    return client.call("session.comparable", {{"expert", kCut}, {"trainee", trainee}})["result"];
-  };
-  EXPECT_EQ(ask(kCut), (nlohmann::json{{"comparable", true}, {"text", ""}}));
-  const nlohmann::json other = ask(kPress);
-  EXPECT_EQ(other["comparable"], false);
-  // In the words of a comparison.
-  const nlohmann::json refused = client.call("session.compare", {{"expert", kCut}, {"trainee", kPress}});
-  const nlohmann::json& error = refused["errors"][0];
-  EXPECT_EQ(other["text"], error["where"].get<std::string>() + " " + error["message"].get<std::string>());
-  EXPECT_NE(other["text"].get<std::string>().find("liver instead of kidney"), std::string::npos) << other;
-  // A training in a scene has the key of the sessions of it.
-  fs::create_directories(file("organs"));
-  const fs::path scenes = fs::path(CTPM_SOURCE_DIR) / "scenes";
-  fs::copy(scenes / "kidney.json", file("kidney.json")),
-      fs::copy(scenes / "organs/kidney.obj", file("organs/kidney.obj"));
-  const nlohmann::json begun = client.call("train.begin", {{"scene", "kidney.json"}, {"stage", 2}})["result"];
-  const auto key_of = [&](const std::string& path) {
-    return client.call("session.motion", {{"path", path}, {"rate_hz", 10}})["result"]["scene_key"].get<std::string>();
-  };
-  EXPECT_EQ(begun["scene_key"], key_of(kCut));
-  EXPECT_NE(begun["scene_key"], key_of(kPress));
 }
 
 TEST_F(Reviewing, NotesLieBesideTheSessionWhichNeverChanges) {
