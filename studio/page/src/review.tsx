@@ -36,7 +36,9 @@ export function Review({ connection, listing, place, onPlace }: {
   const [notes, setNotes] = useState<{ list: Note[]; stage: number }>({ list: [], stage: 0 });
   const [comparison, setComparison] = useState<ComparisonResult | null>(null);
   const [look, setLook] = useState<Look>(place.look ?? kPlainLook);
-  const turned = useRef<string | null>(null); // camera to which a hand has turned the view
+  const turned = useRef<string | null>(null); // camera to which a hand has turned the view, until another one is chosen
+  const newest = useRef(look);
+  newest.current = look;
   const [legend, setLegend] = useState<Legend | null>(null);
 
   useEffect(() => {
@@ -127,7 +129,8 @@ export function Review({ connection, listing, place, onPlace }: {
     player.see(look, size, (seen, as) => {
       setError(null);
       setLegend(seen.title ? seen : null);
-      if (as.camera !== turned.current) player.viewer.look(seen.camera); // else a hand may have turned it farther
+      // A hand may have turned it meanwhile, or a camera was chosen.
+      if (turned.current === null && as.camera === newest.current.camera) player.viewer.look(seen.camera);
       setVersion((v) => v + 1); // what an export sees
     }).catch(setError);
   }, [player, first, second, look, size]);
@@ -139,6 +142,10 @@ export function Review({ connection, listing, place, onPlace }: {
       setLook((now) => ({ ...now, camera }));
     };
   }, [player, first]);
+  const chooseLook = (to: Look) => {
+    if (to.camera !== turned.current) turned.current = null;
+    setLook(to);
+  };
   const otherSide = () => {
     const plane = first && planeOf(look, first.session.view);
     if (!player || !plane) return;
@@ -231,7 +238,7 @@ export function Review({ connection, listing, place, onPlace }: {
         {first && legend && <LegendBar legend={legend} />}
         {first && (
           <div class="look-bar">
-            <LookFields look={look} onLook={setLook} onOtherSide={otherSide} view={first.session.view} />
+            <LookFields look={look} onLook={chooseLook} onOtherSide={otherSide} view={first.session.view} />
           </div>
         )}
         <Problems error={unopened?.error ?? error} onClose={unopened && first ? () => setUnopened(null) : undefined} />

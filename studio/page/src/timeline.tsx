@@ -25,7 +25,7 @@ const kRows: Row[] = [
   { title: "depth", unit: "mm", scale: 1e3, digits: 2, of: (data) => data.depth_m },
   { title: "speed", unit: "mm/s", scale: 1e3, digits: 1, of: (data) => data.speed_m_per_s },
 ];
-const kAxis = 64, kRight = 14, kHeight = 54; // [px]
+const kAxis = 64, kRight = 14, kHeight = 58; // [px]
 const kPoints = 3000; // of a curve
 const kFirst = "#7cc0ff", kSecond = "#ffb35c", kDifference = "#c9a2ff";
 
@@ -51,7 +51,7 @@ function valueAt(values: number[], duration: number, time: number): number | nul
 function options(width: number, colours: string[]): uPlot.Options {
   const axis = { stroke: "#aab2bd", font: "11px ui-monospace, monospace", grid: { stroke: "#262b33", width: 1 }, ticks: { show: false } };
   return {
-    width, height: kHeight, legend: { show: false }, cursor: { show: false }, padding: [7, kRight, 7, 0], // so that numbers of rows below each other stay apart
+    width, height: kHeight, legend: { show: false }, cursor: { show: false }, padding: [15, kRight, 7, 0], // above, the row's name; numbers of rows below each other stay apart
     scales: { x: { time: false }, y: { range: (_, least, most) => [Math.min(0, least), most > least ? most * 1.05 : 1] } },
     axes: [
       { ...axis, show: false },

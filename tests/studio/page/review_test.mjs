@@ -196,6 +196,29 @@ async function filmAndPage(shown, still) {
   return { ...(await until(apart, ({ most }) => most === 0, 5)), size }; // the page's newest drawing may still be on its way
 }
 
+step("a view that is turned faster than the program answers stays where it was turned to", async () => {
+  await page.click("#tab-export");
+  await page.locator(".view > canvas").focus();
+  await page.evaluate(async () => {
+    for (let i = 0; i < 24; ++i) {
+      document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key: i < 18 ? "d" : "a", bubbles: true }));
+      await new Promise((resolve) => setTimeout(resolve, 12));
+    }
+  });
+  await studio.quiet(1000);
+  // What is seen is told once no camera is chosen any more, until the program has chosen one.
+  const [turned, seen] = await page.evaluate(async () => {
+    const camera = () => /--camera (\S+)/.exec(document.querySelector("#panel .command code").textContent)[1].split(/[,:]/).map(Number), before = camera();
+    const select = [...document.querySelectorAll(".look-bar label")].find((label) => label.textContent.startsWith("camera")).querySelector("select");
+    select.value = "";
+    select.dispatchEvent(new Event("change", { bubbles: true }));
+    await Promise.resolve();
+    return [before, camera()];
+  });
+  assert.ok(turned.every((mm, i) => Math.abs(mm - seen[i]) < 0.05), `turned to ${turned}, seen from ${seen}`);
+  await page.keyboard.press("d");
+});
+
 step("views, cutaway and cameras are those of export", async () => {
   const choose = (label, value) => page.locator(`.look-bar label:has-text("${label}") select`).selectOption(value);
   const drawing = () => page.waitForSelector(".drawings canvas:not([hidden])");
