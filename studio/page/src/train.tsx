@@ -217,7 +217,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
   const choose = () => {
     trainer?.clear();
     setChosenName(tryScene ? null : chosenName && freeName(listing, chosenName));
-    setPhase("choose"), setScene(""), setEnded(null);
+    setPhase("choose"), setEnded(null);
   };
   const frame = trainer?.scene?.frame ?? null, view = trainer?.scene?.view ?? null;
   const hands = frame?.second ? [frame, frame.second] : frame ? [frame] : [];
