@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "core/surface/line_hit.h"
 
@@ -52,11 +53,14 @@ BodyOverlaps::BodyOverlaps(const Model& model, std::vector<Body>& bodies) : mode
       facets.facet.insert(facets.facet.end(), touching.begin(), touching.end());
       facets.first.push_back(std::int32_t(facets.facet.size()));
     }
+    Placed& placed = placed_.emplace_back();
+    placed.round.resize(body.surface.patches().size()), placed.patch.resize(placed.round.size(), Box(Vec3{}));
+    placed.triangle.resize(body.surface.triangles().size(), Box(Vec3{}));
     most_vertices = std::max(most_vertices, body.surface.vertex_count());
     most_patches = std::max(most_patches, body.surface.patches().size());
     is_touched_.resize(std::size_t(body.first_vertex) + body.surface.vertex_count());
   }
-  hits_.resize(most_vertices), hit_vertices_.reserve(most_vertices);
+  lines_.resize(most_patches), hits_.resize(most_vertices), hit_vertices_.reserve(most_vertices);
   way_.resize(bodies.size()), reach_.reserve(most_patches), triangles_.reserve(NearSurface::kTrianglesPerPatch);
 }
 
@@ -65,7 +69,7 @@ bool BodyOverlaps::may_meet(std::size_t body, std::size_t other) const {
 }
 
 void BodyOverlaps::begin() {
-  reaches_far_ = true;
+  reaches_far_ = true, ++placing_;
   for (NearPatches& patches : patches_) patches.begin();
 }
 
@@ -120,6 +124,7 @@ void BodyOverlaps::set_reach(std::size_t body, std::size_t other) {
 /// Looks where the vertices of a body are inside another one, or inside itself.
 void BodyOverlaps::look(std::size_t body, std::size_t other) {
   set_reach(body, other);
+  ++look_;
   const double apart = kPatchesApart * model_.organs[std::size_t(bodies_[body].organ)].spacing;
   const auto &own = bodies_[body].surface.patches(), &others = bodies_[other].surface.patches();
   patches_[body].for_each_near(patches_[other], reach_, [&](std::int32_t p, std::int32_t q) {
@@ -128,35 +133,74 @@ void BodyOverlaps::look(std::size_t body, std::size_t other) {
   });
 }
 
-/// Where a vertex may be and where the line from it may cross triangles is checked at rest, moved by what the patches
-/// have moved by at most: most vertices and triangles need not be placed then.
+/// Where tissue is crushed its patches bound little at rest, so what the line from a vertex crosses is looked for among
+/// triangles as they are. They are placed only for vertices that may be near some.
 void BodyOverlaps::look_at_patches(std::size_t body, std::int32_t patch, std::size_t other, std::int32_t other_patch) {
   NearSurface& own = bodies_[body].surface;
-  NearPatches& others = patches_[other];
   const double reach = reach_[std::size_t(patch)];
-  const Box &by = patches_[body].displacements(patch), &others_by = others.displacements(other_patch);
-  const Box back(-others_by.high, -others_by.low);
-  const Box near = patches_[body].box(patch).grown(reach).moved(back);
-  triangles_.clear();
-  Box all = near;
-  others.for_each_triangle(other_patch, near, [&](std::int32_t t) {
-    const Box& rest = others.rest_of_triangle(t);
-    if (triangles_.empty()) all = rest;
-    triangles_.push_back(t), all.add(rest.low), all.add(rest.high);
-  });
-  if (triangles_.empty()) return;
+  Lines& lines = lines_[std::size_t(patch)];
+  if (lines.look == look_ && !placed(other, other_patch).patch[std::size_t(other_patch)].meets(lines.box)) return;
+  bool is_sought = false, has_all = true;
   for (const std::int32_t vertex : patches_[body].vertices(patch)) {
-    const Box around = Box(own.rest(vertex)).moved(by).grown(reach).moved(back);
-    if (!around.meets(all)) continue;
-    const auto first = std::find_if(triangles_.begin(), triangles_.end(),
-                                    [&](std::int32_t t) { return others.rest_of_triangle(t).meets(around); });
-    if (first == triangles_.end()) continue;
+    if (hits_[std::size_t(vertex)].round != round_) {
+      if (!std::exchange(is_sought, true)) seek_triangles(body, patch, other, other_patch);
+      if (!may_be_near(body, patch, vertex)) {
+        has_all = false;
+        continue;
+      }
+    }
     Hit& hit = hit_of(body, vertex);
     const Vec3 from = own.place(vertex);
-    const Box line = Box(from, from + reach * hit.inwards).moved(back);
-    for (auto t = first; t != triangles_.end(); ++t)
-      if (others.rest_of_triangle(*t).meets(line)) meet(from, reach, bodies_[other], *t, hit);
+    const Box line(from, from + reach * hit.inwards);
+    if (vertex == patches_[body].vertices(patch).front()) lines.box = line;
+    lines.box.add(line.low), lines.box.add(line.high);
+    const Placed& there = placed(other, other_patch);
+    if (!there.patch[std::size_t(other_patch)].meets(line)) continue;
+    const NearSurface::Bound& bound = bodies_[other].surface.patches()[std::size_t(other_patch)];
+    for (std::int32_t t = bound.first; t < bound.last; ++t)
+      if (there.triangle[std::size_t(t)].meets(line)) meet(from, reach, bodies_[other], t, hit);
   }
+  if (has_all) lines.look = look_;
+}
+
+/// Finds the triangles of a patch to which vertices of another one may be near, at rest, moved by what the patches have
+/// moved by at most.
+void BodyOverlaps::seek_triangles(std::size_t body, std::int32_t patch, std::size_t other, std::int32_t other_patch) {
+  NearPatches& others = patches_[other];
+  const Box& others_by = others.displacements(other_patch);
+  back_ = Box(-others_by.high, -others_by.low);
+  triangles_.clear();
+  others.for_each_triangle(other_patch, patches_[body].box(patch).grown(reach_[std::size_t(patch)]).moved(back_),
+                           [&](std::int32_t t) { triangles_.push_back(others.rest_of_triangle(t)); });
+  if (triangles_.empty()) return;
+  all_triangles_ = triangles_.front();
+  for (const Box& triangle : triangles_) all_triangles_.add(triangle.low), all_triangles_.add(triangle.high);
+}
+
+/// Whether a vertex of a patch may be near one of those triangles.
+bool BodyOverlaps::may_be_near(std::size_t body, std::int32_t patch, std::int32_t vertex) {
+  if (triangles_.empty()) return false;
+  const Box rest(bodies_[body].surface.rest(vertex));
+  const Box around = rest.moved(patches_[body].displacements(patch)).grown(reach_[std::size_t(patch)]).moved(back_);
+  return around.meets(all_triangles_) &&
+         std::any_of(triangles_.begin(), triangles_.end(), [&](const Box& triangle) { return triangle.meets(around); });
+}
+
+/// The boxes of a surface, with those of the patch in this round.
+const BodyOverlaps::Placed& BodyOverlaps::placed(std::size_t body, std::int32_t patch) {
+  Placed& placed = placed_[body];
+  if (std::exchange(placed.round[std::size_t(patch)], placing_) == placing_) return placed;
+  NearSurface& surface = bodies_[body].surface;
+  const NearSurface::Bound& bound = surface.patches()[std::size_t(patch)];
+  Box& all = placed.patch[std::size_t(patch)];
+  for (std::int32_t t = bound.first; t < bound.last; ++t) {
+    const auto& corner = surface.triangles()[std::size_t(t)].corner;
+    Box& box = placed.triangle[std::size_t(t)];
+    box = Box(surface.place(corner[0]), surface.place(corner[1]), surface.place(corner[2]));
+    if (t == bound.first) all = box;
+    all.add(box.low), all.add(box.high);
+  }
+  return placed;
 }
 
 /// The hit of a vertex in this round, whose search begins here if it has not begun.
@@ -170,12 +214,12 @@ BodyOverlaps::Hit& BodyOverlaps::hit_of(std::size_t body, std::int32_t vertex) {
   return hit;
 }
 
-/// Updates `hit` if the line from `from` [m] meets a triangle nearer than before and nearer than `reach` [m].
+/// Updates `hit` if the line from `from` [m] meets a triangle nearer than before and nearer than `reach` [m]. Its box
+/// meets that of the line.
 void BodyOverlaps::meet(Vec3 from, double reach, Body& other, std::int32_t triangle, Hit& hit) const {
   NearSurface& surface = other.surface;
   const auto& corner = surface.triangles()[std::size_t(triangle)].corner;
   const Vec3 a = surface.place(corner[0]), b = surface.place(corner[1]), c = surface.place(corner[2]);
-  if (!Box(from, from + reach * hit.inwards).meets(Box(a, b, c))) return;
   const std::optional<LineHit> met = meet_line(from, hit.inwards, reach, a, b, c);
   if (!met || met->distance >= hit.distance) return;
   hit.distance = met->distance, hit.body = &other, hit.triangle = triangle, hit.is_exit = met->is_exit;

@@ -65,6 +65,18 @@ class BodyOverlaps {
     std::vector<std::int32_t> first{0}, facet;
   };
 
+  /// Boxes of the triangles of a surface where they are, patch by patch once they are asked for.
+  struct Placed {
+    std::vector<std::uint32_t> round;  ///< of each patch, in which its boxes were found
+    std::vector<Box> patch, triangle;  ///< [m]
+  };
+
+  /// Box of the lines inwards from all vertices of a patch.
+  struct Lines {
+    std::uint32_t look = 0;  ///< in which it was found
+    Box box{Vec3{}};         ///< [m]
+  };
+
   bool is_hidden(const Body& body, std::int32_t vertex) const {
     return hidden_ != nullptr && !hidden_->empty() && (*hidden_)[std::size_t(body.first_vertex + vertex)] != 0;
   }
@@ -72,6 +84,9 @@ class BodyOverlaps {
   void set_reach(std::size_t body, std::size_t other);
   void look(std::size_t body, std::size_t other);
   void look_at_patches(std::size_t body, std::int32_t patch, std::size_t other, std::int32_t other_patch);
+  void seek_triangles(std::size_t body, std::int32_t patch, std::size_t other, std::int32_t other_patch);
+  bool may_be_near(std::size_t body, std::int32_t patch, std::int32_t vertex);
+  const Placed& placed(std::size_t body, std::int32_t patch);
   Hit& hit_of(std::size_t body, std::int32_t vertex);
   void meet(Vec3 from, double reach, Body& other, std::int32_t triangle, Hit& hit) const;
   bool is_far_at_rest(const Body& body, std::int32_t vertex, const Hit& hit) const;
@@ -80,15 +95,18 @@ class BodyOverlaps {
   std::vector<Body>& bodies_;
   std::vector<NearPatches> patches_;  ///< of each body, like the next
   std::vector<PatchFacets> facets_;
-  std::vector<Hit> hits_;                   ///< of the vertices of one body
-  std::vector<std::int32_t> hit_vertices_;  ///< with a hit, or looked at without one
-  std::uint32_t round_ = 0;
+  std::vector<Placed> placed_;
+  std::vector<Lines> lines_;                          ///< of the patches of one body
+  std::vector<Hit> hits_;                             ///< of the vertices of one body
+  std::vector<std::int32_t> hit_vertices_;            ///< with a hit, or looked at without one
+  std::uint32_t round_ = 0, placing_ = 0, look_ = 0;  ///< of one body, of all, of one body and another
   const std::vector<std::uint8_t>* hidden_ = nullptr;
-  bool reaches_far_ = true;               ///< everywhere
-  std::vector<double> way_;               ///< that each body may have come in the step [m]
-  std::vector<std::uint8_t> is_touched_;  ///< facets, by their first vertices through all organs
-  std::vector<double> reach_;             ///< of the patches of one body [m]
-  std::vector<std::int32_t> triangles_;   ///< of one patch that are near another
+  bool reaches_far_ = true;                   ///< everywhere
+  std::vector<double> way_;                   ///< that each body may have come in the step [m]
+  std::vector<std::uint8_t> is_touched_;      ///< facets, by their first vertices through all organs
+  std::vector<double> reach_;                 ///< of the patches of one body [m]
+  std::vector<Box> triangles_;                ///< of one patch that another may be near, at rest [m]
+  Box all_triangles_{Vec3{}}, back_{Vec3{}};  ///< around them; by how far they are back from where they are [m]
 };
 
 struct DeepestOverlap {
