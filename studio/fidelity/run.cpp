@@ -86,7 +86,7 @@ std::vector<Recipe> recipes() {
       {{"strokes", "Strokes through the shipped organs", false},
        [](const FidelityOptions& o) { return told(measure_strokes(o.shipped, o.is_quick)); }},
       {{"pieces", "Pieces that fall", false}, [](const FidelityOptions&) { return told(measure_pieces(4e-3)); }},
-      {{"grip", "Grip", false}, [](const FidelityOptions&) { return told(measure_grip(4e-3)); }},
+      {{"grip", "Grip", false}, [](const FidelityOptions& o) { return told(measure_grip(o.is_quick ? 6e-3 : 4e-3)); }},
       {{"recovery", "Recovery from abuse", false},
        [](const FidelityOptions& o) {
          return told(measure_recovery(o.is_quick ? Radii{4e-3} : Radii{4e-3, 2e-3}));
@@ -98,7 +98,8 @@ std::vector<Recipe> recipes() {
        }},
       {{"free-motion", "Free spin and free fall", false},
        [](const FidelityOptions&) { return told(measure_free_motion(4e-3)); }},
-      {{"meeting", "Bodies that meet", false}, [](const FidelityOptions&) { return told(measure_meeting(4e-3)); }},
+      {{"meeting", "Bodies that meet", false},
+       [](const FidelityOptions& o) { return told(measure_meeting(o.is_quick ? 6e-3 : 4e-3)); }},
       {{"liver", "The shipped liver, turned under its own tool", false},
        [](const FidelityOptions& o) {
          return turned_scene(o, o.shipped + "/liver.json", true, "liver",
