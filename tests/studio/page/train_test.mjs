@@ -139,15 +139,16 @@ step("a session begins when the tool is taken up: what comes before is in no tim
   // Pictures that are drawn at the same time would each show what is older.
   await page.evaluate(() => {
     const { fenceSync, deleteSync } = WebGL2RenderingContext.prototype;
-    globalThis.drawn = { now: 0, most: 0, all: 0 };
+    const now = new Set(); // without one that was begun before
+    globalThis.drawn = { most: 0, all: 0 };
     Object.assign(WebGL2RenderingContext.prototype, {
       fenceSync(...of) {
-        const { drawn } = globalThis;
-        ++drawn.all, drawn.most = Math.max(drawn.most, ++drawn.now);
-        return fenceSync.apply(this, of);
+        const { drawn } = globalThis, sync = fenceSync.apply(this, of);
+        ++drawn.all, now.add(sync), drawn.most = Math.max(drawn.most, now.size);
+        return sync;
       },
       deleteSync(sync) {
-        --globalThis.drawn.now;
+        now.delete(sync);
         return deleteSync.call(this, sync);
       },
     });
