@@ -7,6 +7,7 @@
 #include "core/model/result.h"
 #include "studio/server/desk.h"
 #include "studio/server/folder.h"
+#include "studio/server/kept_answers.h"
 #include "studio/server/known_files.h"
 #include "studio/server/parameters.h"
 
@@ -18,8 +19,9 @@ struct CallContext {
   Desk* desk = nullptr;  ///< of the page that calls; null for a call by POST
   std::function<void(std::int64_t done, std::int64_t total)> progress = [](std::int64_t, std::int64_t) {};
   std::function<bool()> should_stop = [] { return false; };
-  KnownFiles* films = nullptr;     ///< an export is added to them, if there are any
-  KnownFiles* verified = nullptr;  ///< so is a session that replays as it was recorded; comparisons ask for it
+  KnownFiles* films = nullptr;         ///< an export is added to them, if there are any
+  KnownFiles* verified = nullptr;      ///< so is a session that replays as it was recorded; comparisons ask for it
+  KeptAnswers* comparisons = nullptr;  ///< known ones are answered from them
 };
 
 /// Runs the call `name`; PROTOCOL.md lists them. Returns its result as JSON. May take long; any thread may run it.

@@ -10,6 +10,7 @@
 
 #include "studio/server/access.h"
 #include "studio/server/folder.h"
+#include "studio/server/kept_answers.h"
 #include "studio/server/known_files.h"
 #include "studio/server/limits.h"
 #include "studio/server/urgency.h"
@@ -24,8 +25,9 @@ struct Services {
   Folder folder;
   Access access;
   Limits limits;
-  KnownFiles uploads, films;                             ///< taken from pages; exported for them
-  KnownFiles verified;                                   ///< sessions that replayed as they were recorded
+  KnownFiles uploads, films;  ///< taken from pages; exported for them
+  KnownFiles verified;        ///< sessions that replayed as they were recorded
+  KeptAnswers comparisons;
   std::size_t connections = 0;                           ///< open now; of the network's thread
   std::map<const void*, std::function<void()>> clients;  ///< closes each page; of the network's thread
   std::atomic<bool> ends{false};                         ///< the server is about to stop: calls must end

@@ -7,6 +7,7 @@
 #include "studio/compare/compare_files.h"
 #include "studio/compare/session_track.h"
 #include "studio/output/json_writer.h"
+#include "studio/output/number_text.h"
 #include "studio/server/call_table.h"
 #include "studio/server/scene_text.h"
 #include "studio/session/session_info.h"
@@ -136,6 +137,7 @@ Result<std::string> compare_sessions(Parameters& parameters, const CallContext& 
   const Result<std::string> expert_file = context.folder.find(expert), trainee_file = context.folder.find(trainee);
   for (const auto* file : {&expert_file, &trainee_file})
     if (!*file) return file->errors();
+  const KeptAnswers::Files read = KeptAnswers::now({*expert_file, *trainee_file});
   Result<compare::OpenedFiles> opened = compare::open_files(*expert_file, *trainee_file);
   if (!opened) return opened.errors();
   compare::CompareFilesOptions options;
@@ -144,6 +146,11 @@ Result<std::string> compare_sessions(Parameters& parameters, const CallContext& 
     options.is_expert_known = context.verified->holds(*expert_file);
     options.is_trainee_known = context.verified->holds(*trainee_file);
   }
+  const std::string question = (force_limit ? output::short_number(*force_limit, 17) : "") +
+                               (options.is_expert_known ? " expert known" : "") +
+                               (options.is_trainee_known ? " trainee known" : "");
+  if (context.comparisons)
+    if (const std::optional<std::string> known = context.comparisons->find(question, read)) return *known;
   const Result<compare::ComparedFiles> files = compare::compare_files(std::move(*opened), options);
   if (!files) return files.errors();
   const compare::ComparedSessions compared = files->sessions();
@@ -161,8 +168,10 @@ Result<std::string> compare_sessions(Parameters& parameters, const CallContext& 
     path.begin_list().value(comparison.expert_time[pair.a]).value(comparison.trainee_time[pair.b]).end_list();
   }
   path.end_list();
-  return "{\"comparison\": " + compare::comparison_json(compared) + ", \"remarks\": " + json.text() +
-         ", \"path_s\": " + path.text() + "}";
+  const std::string answer = "{\"comparison\": " + compare::comparison_json(compared) +
+                             ", \"remarks\": " + json.text() + ", \"path_s\": " + path.text() + "}";
+  if (context.comparisons) context.comparisons->keep(question, read, answer);
+  return answer;
 }
 
 }  // namespace ctpm::server

@@ -117,7 +117,7 @@ void WebClient::take_call(Parameters& message) {
     CallContext context{self->services_.folder, desk.get()};
     context.should_stop = [&] { return *cancelled || self->services_.ends; };
     context.films = &self->services_.films;
-    context.verified = &self->services_.verified;
+    context.verified = &self->services_.verified, context.comparisons = &self->services_.comparisons;
     context.progress = [&](std::int64_t done, std::int64_t total) {
       if (Clock::now() - last < std::chrono::milliseconds(100)) return;
       last = Clock::now();

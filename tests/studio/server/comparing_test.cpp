@@ -41,6 +41,40 @@ TEST_F(Comparing, AComparisonSaysHowFarItIsAndCanBeStopped) {
   EXPECT_EQ(told.back(), at["total"]);
 }
 
+TEST_F(Comparing, WhatIsKnownIsAnsweredAtOnceUntilAFileChanges) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  int id = 50;
+  // The answer, and whether anything was done for it.
+  const auto compared = [&](const nlohmann::json& parameters) {
+    client.send({{"id", ++id}, {"call", "session.compare"}, {"params", parameters}});
+    for (bool was_done = false;;) {
+      const SocketClient::Message message = client.receive();
+      const nlohmann::json answer = message.is_text ? nlohmann::json::parse(message.bytes) : nlohmann::json();
+      if (answer.is_null() || answer.value("id", 0) != id) continue;
+      if (!answer.contains("progress")) return std::pair(answer["result"], was_done);
+      was_done = true;
+    }
+  };
+  const nlohmann::json pair{{"expert", kCut}, {"trainee", kCut}};
+  const auto first = compared(pair), again = compared(pair);
+  EXPECT_TRUE(first.second);
+  EXPECT_FALSE(again.second);
+  EXPECT_EQ(again.first, first.first);
+  // Another limit is another question, whose answer is not that of the first.
+  nlohmann::json limited = pair;
+  limited["force_limit_n"] = 0.5;
+  const auto other = compared(limited);
+  EXPECT_TRUE(other.second);
+  EXPECT_NE(other.first, first.first);
+  // So is a session that was verified: a remark less may be made of it.
+  ASSERT_EQ(client.call("session.verify", {{"path", kCut}})["result"]["same"], true);
+  EXPECT_TRUE(compared(pair).second);
+  EXPECT_FALSE(compared(pair).second);
+  fs::last_write_time(file(kCut), fs::last_write_time(file(kCut)) + std::chrono::seconds(1));
+  EXPECT_TRUE(compared(pair).second);
+}
+
 TEST_F(Comparing, AComparisonKnowsWhatWasVerifiedUntilTheFileChanges) {
   // Longer than sessions that a comparison replays whole.
   std::ofstream(file("long.json")) << R"({"format": "ctpm-script", "version": 1, "steps": [
