@@ -1,7 +1,7 @@
 // How finely pictures are drawn: as the screen shows them, and coarser while they come late.
 
-const kSteps = [1, 0.75]; // pixels drawn for one of the screen, along each side; fewer would be seen
-const kLate = 50, kEarly = 16; // of a picture until it is there [ms]
+const kSteps = [1, 0.75, 0.55]; // pixels drawn for one of the screen, along each side; fewer would be seen by all
+const kLate = 40, kEarly = 16; // of a picture until it is there [ms]
 const kJudged = 8; // pictures that are judged together
 const kStill = 4; // samples in a pixel of a picture that stands still, where the browser smooths no edges
 

@@ -30,6 +30,10 @@ function farOf({ eye, target }: CameraView): number {
   return Math.hypot(...eye.map((x, axis) => x - target[axis]));
 }
 
+function wholeMicroseconds(time: number): number {
+  return Math.round(1e6 * time) / 1e6;
+}
+
 /** The clock of a review: moves to a moment, plays, and asks the program for one picture at a time. */
 export class Player {
   readonly tracks = new Map<number, Track>();
@@ -199,7 +203,7 @@ export class Player {
 
   move(time: number): void {
     const { from, to } = this.span;
-    this.time = Math.min(Math.max(Math.round(1e6 * time) / 1e6, from), to); // whole microseconds
+    this.time = Math.min(Math.max(wholeMicroseconds(time), from), to);
     this.movedAt = performance.now();
     this.pictureAfter = this.replayedAfter = null;
     this.ask();
@@ -318,7 +322,7 @@ export class Player {
     if (this.waiting.size === 0) {
       const by = Math.min((now - this.playedAt) / 1e3, kLongestStep) * this.speed;
       this.playedAt = now;
-      this.time = Math.min(this.time + by, this.span.to);
+      this.time = Math.min(wholeMicroseconds(this.time + by), this.span.to);
       this.steps.push([now, by]);
       while (this.steps.length > 2 && now - this.steps[0][0] > 1000) this.steps.shift();
       const span = (now - this.steps[0][0]) / 1e3;
