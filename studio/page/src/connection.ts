@@ -154,11 +154,14 @@ export function takeToken(): string {
   return token ?? localStorage.getItem(kTokenKey) ?? "";
 }
 
-/** Calls `take` with a token that another page of this address was given: that of the program's next run. */
+/** Calls `take` with a token that this page, or another one of this address, is given: that of the program's next run. */
 export function onNewToken(take: (token: string) => void): () => void {
   const listen = (event: StorageEvent) => {
     if (event.key === kTokenKey && event.newValue) take(event.newValue);
   };
-  addEventListener("storage", listen);
-  return () => removeEventListener("storage", listen);
+  const look = () => {
+    if (new URLSearchParams(location.hash.slice(1)).has("token")) take(takeToken());
+  };
+  addEventListener("storage", listen), addEventListener("hashchange", look);
+  return () => (removeEventListener("storage", listen), removeEventListener("hashchange", look));
 }

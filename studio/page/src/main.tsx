@@ -69,6 +69,7 @@ function App() {
   };
   useEffect(() => {
     const back = () => {
+      if (new URLSearchParams(location.hash.slice(1)).has("token")) return; // the program's new address, in this tab: the page goes on
       const { room, place } = readPlace();
       show(room, place);
     };

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { makeFolder, openStudio, overflow, paths, picture, seriousFindings } from "./browser.mjs";
+import { leave, makeFolder, openStudio, overflow, paths, picture, seriousFindings } from "./browser.mjs";
 
 test("a page of another version says so, and goes on when it is loaded again", async () => {
   const written = /`ctpm\.studio\.(\d+)`/.exec(readFileSync(join(paths.source, "studio", "server", "PROTOCOL.md"), "utf8"))[1];
@@ -34,4 +34,15 @@ test("a page of another version says so, and goes on when it is loaded again", a
   assert.deepEqual(studio.complaints, []);
   assert.equal(await studio.close(), 0);
   rmSync(folder, { recursive: true });
+});
+
+test("a page goes on, in its room, where the address of the program's next run is opened in it", async () => {
+  const folder = makeFolder("kidney.json"), studio = await openStudio(folder), { page } = studio;
+  await page.click("header nav button:has-text('Train')");
+  await studio.kill();
+  await page.waitForSelector(".empty:has-text('The studio has ended')");
+  await page.goto(await studio.startAgain());
+  await page.waitForSelector(".room.train");
+  assert.ok(!page.url().includes("token"));
+  await leave(studio, folder);
 });
