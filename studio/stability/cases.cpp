@@ -484,7 +484,7 @@ std::vector<StabilityCase> stability_cases(bool is_quick) {
   add_holds(cases);
   add_cut(cases);
   add_device(cases);
-  add_bodies(cases);
+  add_bodies(cases, is_quick);
   return cases;
 }
 

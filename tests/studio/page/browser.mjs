@@ -35,6 +35,14 @@ export function step(name, run) {
   });
 }
 
+/** Whether all of a test is run, as under the label slow, or what fits beside all others. */
+export const isWhole = process.env.CTPM_WHOLE === "1";
+
+/** A step that is taken only where all of a test is run: what comes after it finds the page as it was before. */
+export function rareStep(name, run) {
+  if (isWhole) step(name, run);
+}
+
 /** A folder with the shipped scenes and the sessions that are named. */
 export function makeFolder(...names) {
   const folder = mkdtempSync(join(tmpdir(), "ctpm-page-"));

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
-import { ctpm, ctpmBeside, leave, makeFolder, openStudio, outOfReach, picture, seenFirst, seriousFindings, step } from "./browser.mjs";
+import { ctpm, ctpmBeside, leave, makeFolder, openStudio, outOfReach, picture, rareStep, seenFirst, seriousFindings, step } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm", kOther = "liver-press-expert.ctpm";
 let folder, studio, page, expert, clumsy;
@@ -255,7 +255,7 @@ step("it is said whose session is whose, and they can be swapped at the same mom
   assert.deepEqual(await times(), before);
 });
 
-step("a link keeps how the pair is seen: view, colours, cutaway, camera and what brings both together", async () => {
+rareStep("a link keeps how the pair is seen: view, colours, cutaway, camera and what brings both together", async () => {
   const choose = (label, value) => page.locator(`.look-bar label:has-text("${label}") select`).selectOption(value);
   const looks = () => page.locator(".look-bar select").evaluateAll((all) => all.map((select) => select.selectedOptions[0].textContent));
   const drawn = () => page.evaluate(() => [...document.querySelectorAll(".drawings canvas")].map((canvas) => (canvas.hidden ? "" : canvas.toDataURL())));

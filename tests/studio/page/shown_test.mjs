@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { networkInterfaces } from "node:os";
 import { after, before } from "node:test";
 import { openDevice } from "./igtl.mjs";
-import { chooseDevice, ctpm, ctpmBeside, makeFolder, openStudio, paths, picture, step, takeUp } from "./browser.mjs";
+import { chooseDevice, ctpm, ctpmBeside, makeFolder, openStudio, paths, picture, rareStep, step, takeUp } from "./browser.mjs";
 import { cross, dot, length, minus, scaled, unit } from "./vectors.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm", kSame = "kidney-same.ctpm";
@@ -93,15 +93,18 @@ step("the numbers beside the curves are the table's: force, speed, and the diffe
   }
   assert.ok(fastest > 20, "something moved");
   await picture(page, "shown-curves");
+  await page.locator("#panel select").selectOption("");
+  await page.click("#tab-moment");
 });
 
-step("compare and verify say how far they are, in numbers, and can be cancelled", async () => {
+rareStep("compare and verify say how far they are, in numbers, and can be cancelled", async () => {
   await page.evaluate(() => {
     globalThis.said = new Set();
     new MutationObserver(() => globalThis.said.add(document.querySelector(".working")?.textContent ?? "")).observe(document.body, { subtree: true, childList: true, characterData: true });
   });
   const saidOf = async (what) => (await page.evaluate(() => [...globalThis.said])).map((text) => new RegExp(`${what} (\\d+) %`).exec(text)?.[1]).filter((share) => share > 0 && share < 100);
   // A short one with itself.
+  await page.click("#tab-compare");
   await page.locator("#panel select").selectOption(kSame);
   await page.waitForSelector(`.captions .second:has-text("${kSame}")`);
   await page.click("#panel button:text-is('path')"); // which is known once they are compared
@@ -231,7 +234,7 @@ step("the arrow is as long as the force, and points as it does", async () => {
   assert.ok(off < Math.sin((8 * Math.PI) / 180), `${(Math.asin(off) * 180) / Math.PI} degrees`);
 });
 
-step("the shown commands verify and record do what the buttons did", async () => {
+rareStep("the shown commands verify and record do what the buttons did", async () => {
   await page.keyboard.press("Escape");
   await page.waitForSelector("button:has-text('Train again')");
   const commands = () => page.locator("aside .command code").allInnerTexts();
