@@ -2,6 +2,7 @@
 // same equations.
 //   ctpm_peers_bench                                   all cases: a quarter of an hour
 //   ctpm_peers_bench --benchmark_filter=ball/729/kPa   one of them
+//   ctpm_peers_bench --benchmark_filter=springs        blocks of masses and springs: see spring_block.h
 // "ball": a ball presses 4 mm deep without friction and leaves. Core moves it along a straight line within a tick,
 // which is part of core's error. "load": a load on a patch grows and vanishes; only its rate is discontinuous, at three
 // moments. There is no gravity, so all start from the same rest state. Times are processor time of one thread. Errors
@@ -20,6 +21,7 @@
 #include <string>
 
 #include "core/stepping/step.h"
+#include "tests/core/bench/spring_block.h"
 #include "tests/core/bench/sundials_runs.h"
 #include "tests/core/blocks.h"
 
@@ -239,6 +241,7 @@ int main(int argc, char** argv) {
         cases.push_back(std::make_unique<Case>(make_case(drive, edge, reading, viscosity)));
         add_all(*cases.back());
       }
+  add_spring_blocks();
   benchmark::RunSpecifiedBenchmarks();
   for (const auto& c : cases) print_ratios(*c);
 }
