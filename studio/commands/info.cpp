@@ -2,6 +2,7 @@
 #include <memory>
 #include <string>
 
+#include "importers/text.h"
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
@@ -75,7 +76,8 @@ void print_text(recordings::SessionReader& reader, const recordings::SessionStat
   for (const OrganRange& organ : model.organs)
     print("organ      %s: %d spheres in %d layers, radius %g mm, spacing %g mm\n", printable(organ.name).c_str(),
           organ.count, organ.layer_count, organ.sphere_radius * 1e3, organ.spacing * 1e3);
-  print("network    %zu spheres, %zu elements\n", model.sphere_count(), model.element_count());
+  print("network    %s, %s\n", importers::counted(std::int64_t(model.sphere_count()), "sphere").c_str(),
+        importers::counted(std::int64_t(model.element_count()), "element").c_str());
   print("tick time  p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms; %lld late\n", s.tick_time_p50 * 1e3,
         s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)s.late_ticks);
   if (s.late_ticks > 0)
@@ -86,9 +88,9 @@ void print_text(recordings::SessionReader& reader, const recordings::SessionStat
           s.input_age_max * 1e3);
   if (s.slip_max > 0) print("clock      %.3f s behind real time at the end, %.3f s at most\n", s.slip, s.slip_max);
   for (const auto& [name, value] : s.values) print("value      %s = %g\n", printable(name).c_str(), value);
-  print("tissue     %s; %lld elements severed, %lld pieces came loose\n",
-        extremes_text(s.max_force, s.max_depth).c_str(), (long long)s.severed,
-        (long long)recordings::pieces_came_loose(events, reader.tick_count()));
+  print("tissue     %s; %s severed, %s came loose\n", extremes_text(s.max_force, s.max_depth).c_str(),
+        importers::counted(s.severed, "element").c_str(),
+        importers::counted(recordings::pieces_came_loose(events, reader.tick_count()), "piece").c_str());
   if (model.tissue_cells.size() > 0)
     print("inside out %s at the end\n",
           recordings::cells_inside_out(events, reader.tick_count()) > 0 ? "TISSUE IS INSIDE OUT" : "no tissue");

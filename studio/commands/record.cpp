@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "importers/text.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/commands/extremes_text.h"
@@ -104,8 +105,8 @@ int print_outcome(const std::string& path, const Model& model, const session::Re
     print_remark(path + ": error: the simulation was refused at tick " + std::to_string(outcome.run.ticks) +
                  ", sphere " + std::to_string(outcome.run.worst_sphere) + "; what came before is saved");
   if (!outcome.run.fault.empty()) print_remark(path + ": error: " + outcome.run.fault + "; what came before is saved");
-  print("%s: %.3f s in %lld ticks, %s, %lld elements severed\n", path.c_str(), double(s.ticks) * model.tick,
-        (long long)s.ticks, extremes_text(s.max_force, s.max_depth).c_str(), (long long)s.severed);
+  print("%s: %.3f s in %lld ticks, %s, %s severed\n", path.c_str(), double(s.ticks) * model.tick, (long long)s.ticks,
+        extremes_text(s.max_force, s.max_depth).c_str(), importers::counted(s.severed, "element").c_str());
   print("tick time p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms, %lld late\n", s.tick_time_p50 * 1e3,
         s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)outcome.run.late_ticks);
   if (outcome.run.late_ticks > 0)

@@ -6,6 +6,7 @@
 #include <string>
 #include <thread>
 
+#include "importers/text.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/commands/stop_signal.h"
@@ -45,7 +46,8 @@ int plan_sweep(const SweepArguments& arguments) {
     return print_errors(written.errors());
   std::size_t finished = 0;
   for (const sweep::Task& task : plan->tasks) finished += sweep::is_finished(arguments.folder, task.id);
-  print("%s: %zu sessions planned", arguments.folder.c_str(), plan->tasks.size());
+  print("%s: %s planned", arguments.folder.c_str(),
+        importers::counted(std::int64_t(plan->tasks.size()), "session").c_str());
   if (finished > 0) print(", of which %zu are done already", finished);
   print("\n");
   print_remark("written: " + arguments.folder + "/manifest.csv, manifest.json; next: ctpm sweep run " +
@@ -83,8 +85,8 @@ int run_here(const SweepArguments& arguments) {
   }();
   if (!summary) return print_errors(summary.errors());
   const std::int64_t count = summary->recorded + summary->failed;
-  print("%lld sessions in %s s, %lld failed\n", (long long)count, output::fixed(summary->wall_s, 1).c_str(),
-        (long long)summary->failed);
+  print("%s in %s s, %lld failed\n", importers::counted(count, "session").c_str(),
+        output::fixed(summary->wall_s, 1).c_str(), (long long)summary->failed);
   if (summary->task_processor_s > 0)
     print("processor time %s s, of which the sweep itself %s %%\n", output::fixed(summary->processor_s, 2).c_str(),
           output::fixed(100 * (summary->processor_s / summary->task_processor_s - 1), 2).c_str());

@@ -38,22 +38,27 @@ bool SessionCost::is_own() const {
   return threads == 1 || processor_share >= kLeast * threads;
 }
 
-Result<SessionCost> measure_session(const loading::LoadedScene& scene, const ScriptOf& script, RunOptions running) {
+Result<SessionCost> measure_session(const loading::LoadedScene& scene, const ScriptOf& script, RunOptions running,
+                                    const SessionCost* like) {
   const Result<scenes::Script> steps = script(scene);
   if (!steps) return steps.errors();
   const UnkeptSession unkept;
   TickTimes times(scene.built.model);
   running.in_real_time = false;
   running.threads = threads_for(scene.built.model);
+  TooLong too_long(like ? &like->times : nullptr, scene.built.model.tick);
   double lost = 0, all = 0;
   running.watch = [&](const State&, const recordings::TickRecord& record, const RunOutcome& so_far) {
-    times.add(record, so_far.lost), lost += so_far.lost, all += record.tick_time;
+    too_long.add(times.add(record, so_far.lost), record.tick_time - so_far.lost);
+    lost += so_far.lost, all += record.tick_time;
   };
+  const auto asked_to_stop = running.should_stop;
+  running.should_stop = [&] { return too_long.is_sure() || (asked_to_stop && asked_to_stop()); };
   const std::clock_t work = std::clock();
   const auto start = std::chrono::steady_clock::now();
   const Result<RecordOutcome> outcome = record_script(scene, *steps, unkept.file(), false, running);
   if (!outcome) return outcome.errors();
-  if (running.should_stop && running.should_stop()) return Error{scene.path, "stopped", ""};
+  if (asked_to_stop && asked_to_stop()) return Error{scene.path, "stopped", ""};
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   SessionCost cost{*outcome,
                    {},
@@ -84,7 +89,7 @@ Result<std::optional<FittingRadius>> find_fitting_radius(const loading::LoadedSc
             if (has_mesh(organ)) organ.fill.radius *= factor, organ.fill.gap *= factor;
         });
     if (!coarser) break;  // an organ that is too thin for such spheres, an anchor that holds none
-    Result<SessionCost> now = measure_session(*coarser, script, running);
+    Result<SessionCost> now = measure_session(*coarser, script, running, &cost);
     if (!now) return now.errors();
     const Tried tried{factor, now->dearest()};
     if (tried.time <= tick && !stepping::is_refused(now->outcome.run.status))

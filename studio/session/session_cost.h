@@ -16,7 +16,7 @@ namespace ctpm::session {
 /// What the ticks of a session cost on this machine, and what its script did.
 struct SessionCost {
   RecordOutcome outcome;
-  std::array<DeedTimes, kDeeds.size()> times;
+  TimesOfDeeds times;
   int threads = 1;
   double processor_share = 1;  ///< processor time of all threads over time
   double lost_share = 0;       ///< of the ticks' time: in which their first thread had no processor
@@ -33,8 +33,10 @@ struct SessionCost {
 using ScriptOf = std::function<Result<scenes::Script>(const loading::LoadedScene& scene)>;
 
 /// Records a session as `record --fast` does, into a file that goes, and measures its ticks. Errors: those of `script`;
-/// no file can be written; `running.should_stop` ended it.
-Result<SessionCost> measure_session(const loading::LoadedScene& scene, const ScriptOf& script, RunOptions running);
+/// no file can be written; `running.should_stop` ended it. `like`: another one of the same script; the session
+/// ends once its ticks are sure to be too long, see TooLong.
+Result<SessionCost> measure_session(const loading::LoadedScene& scene, const ScriptOf& script, RunOptions running,
+                                    const SessionCost* like = nullptr);
 
 /// A filling whose ticks hold the scene's rate.
 struct FittingRadius {

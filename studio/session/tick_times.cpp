@@ -19,6 +19,12 @@ const char* name_of(Deed deed) {
   return deed == Deed::cut ? "in a cut" : deed == Deed::contact ? "in contact" : "no tool in tissue";
 }
 
+void TooLong::add(Deed deed, double own) {
+  if (like_ == nullptr || deed == Deed::none || own <= most_) return;
+  const auto at = std::size_t(deed);
+  is_sure_ |= 100 * ++count_[at] > (*like_)[at].ticks;
+}
+
 Deed TickTimes::deed_of(const recordings::TickRecord& record) const {
   Deed deed = Deed::none;
   for (std::size_t hand = 0; hand < std::size_t(model_.hands); ++hand) {
@@ -28,9 +34,11 @@ Deed TickTimes::deed_of(const recordings::TickRecord& record) const {
   return deed;
 }
 
-void TickTimes::add(const recordings::TickRecord& record, double lost) {
-  const auto deed = std::size_t(deed_of(record));
-  times_[deed].push_back(float(record.tick_time)), own_[deed].push_back(float(record.tick_time - lost));
+Deed TickTimes::add(const recordings::TickRecord& record, double lost) {
+  const Deed deed = deed_of(record);
+  times_[std::size_t(deed)].push_back(float(record.tick_time));
+  own_[std::size_t(deed)].push_back(float(record.tick_time - lost));
+  return deed;
 }
 
 DeedTimes TickTimes::of(Deed deed) const {

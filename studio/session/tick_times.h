@@ -24,14 +24,34 @@ struct DeedTimes {
   double own_p99 = 0;       ///< the same, less what the machine took of each tick: other programs slow it little [s]
 };
 
+using TimesOfDeeds = std::array<DeedTimes, kDeeds.size()>;
+
+/// Tells early that a session's p99 will be too high, by another one of the same script: where more than a hundredth of
+/// that one's ticks in contact or in a cut were too long in this one.
+class TooLong {
+ public:
+  /// `like` must outlive it; null: never. `most`: the longest time [s] that is not too long.
+  TooLong(const TimesOfDeeds* like, double most) : like_(like), most_(most) {}
+
+  /// `own`: what a tick took, less what the machine took of it [s].
+  void add(Deed deed, double own);
+  bool is_sure() const { return is_sure_; }
+
+ private:
+  const TimesOfDeeds* like_;
+  double most_;
+  std::array<std::int64_t, kDeeds.size()> count_{};
+  bool is_sure_ = false;
+};
+
 /// Sorts the computing times of a session's ticks by deed.
 class TickTimes {
  public:
   /// `model` must outlive it.
   explicit TickTimes(const Model& model) : model_(model) {}
 
-  /// `lost`: what the machine took of the tick, RunOutcome::lost [s].
-  void add(const recordings::TickRecord& record, double lost = 0);
+  /// `lost`: what the machine took of the tick, RunOutcome::lost [s]. Returns what the tick did.
+  Deed add(const recordings::TickRecord& record, double lost = 0);
   DeedTimes of(Deed deed) const;
 
  private:

@@ -72,7 +72,7 @@ TEST(CuttingSession, TellsTheForceAndThePieceThatComesLoose) {
   const auto verified = run_ctpm({"verify", "cut.ctpm"}, folder.path());
   EXPECT_EQ(verified.code, 0) << verified.out;
   const auto info = run_ctpm({"info", "cut.ctpm"}, folder.path());
-  EXPECT_TRUE(holds(info.out, "1 pieces came loose")) << info.out;
+  EXPECT_TRUE(holds(info.out, ", 1 piece came loose")) << info.out;
   EXPECT_TRUE(holds(info.out, "piece came loose: pieces that came loose: 1")) << info.out;
   const auto json = run_ctpm({"info", "cut.ctpm", "--json"}, folder.path());
   EXPECT_TRUE(holds(json.out, "\"pieces_came_loose\": 1")) << json.out;

@@ -54,6 +54,22 @@ TEST(TickTimes, WhatOtherProgramsTookIsNotTheTicksOwn) {
   EXPECT_EQ(times.of(Deed::contact).own_p99, 1.5);
 }
 
+TEST(TooLong, IsSureOnceAHundredthOfASessionLikeItWas) {
+  session::TimesOfDeeds like{};
+  like[std::size_t(Deed::contact)].ticks = 1000, like[std::size_t(Deed::cut)].ticks = 150;
+  session::TooLong in_contact(&like, 1), in_a_cut(&like, 1), nothing_like_it(nullptr, 1);
+  for (int i = 0; i < 10; ++i) in_contact.add(Deed::contact, 1.1), in_contact.add(Deed::none, 9);
+  for (int i = 0; i < 1000; ++i) in_contact.add(Deed::contact, 1), nothing_like_it.add(Deed::cut, 2);
+  EXPECT_FALSE(in_contact.is_sure()) << "10 of 1,000 may be, and what no tool touched does not count";
+  in_contact.add(Deed::contact, 1.1);
+  EXPECT_TRUE(in_contact.is_sure());
+  in_a_cut.add(Deed::cut, 2);
+  EXPECT_FALSE(in_a_cut.is_sure());
+  in_a_cut.add(Deed::cut, 2);
+  EXPECT_TRUE(in_a_cut.is_sure());
+  EXPECT_FALSE(nothing_like_it.is_sure());
+}
+
 TEST(SessionCostOf, ManyThreadsIsOwnOnlyIfAllHadAProcessor) {
   session::SessionCost cost;
   cost.processor_share = 0.4;

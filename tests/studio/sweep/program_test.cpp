@@ -224,7 +224,7 @@ TEST_F(SweepProgram, PlannedAgainKeepsWhatDidNotChangeAndRefusesWhatDid) {
   ASSERT_EQ(run({"run", "out"}).code, 0);
   testing::write_sweep(folder(), R"("vary": [{"key": "/organs/0/material/stiffness_scale", "values": [2, 3]}])");
   EXPECT_EQ(run({"plan", "sweep.json", "-o", "out"}).out, "out: 2 sessions planned, of which 1 are done already\n");
-  EXPECT_EQ(run({"run", "out"}).out.find("1 sessions in "), 0u);
+  EXPECT_EQ(run({"run", "out"}).out.find("1 session in "), 0u);
   // Another script is another sweep: what is done stays, what is new is not what was planned.
   testing::write_sweep(folder(), R"("vary": [{"key": "/organs/0/material/stiffness_scale", "values": [2, 4]}])");
   ASSERT_EQ(run({"plan", "sweep.json", "-o", "out"}).code, 0);
@@ -261,7 +261,7 @@ TEST_F(SweepProgram, RunsACommandOnEachSession) {
   ASSERT_EQ(run({"retry", "out"}).code, 0);
   EXPECT_EQ(run({"run", "out"}).code, 2);
   ASSERT_EQ(run({"plan", "--each", "verify", "-o", "out", "a.ctpm", "b.ctpm"}).code, 0);
-  EXPECT_EQ(run({"run", "out"}).out.find("1 sessions in "), 0u);
+  EXPECT_EQ(run({"run", "out"}).out.find("1 session in "), 0u);
   EXPECT_EQ(run({"collect", "out"}).code, 0);
 }
 
