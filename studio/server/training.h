@@ -21,6 +21,7 @@ namespace ctpm::server {
 
 /// What a page asks for when it begins to train.
 struct TrainingRequest {
+  std::string scene;              ///< file of the scene
   std::string file;               ///< session file to write; it must not exist. Empty: nothing is kept
   std::string shown;              ///< its name as the page knows it
   double most_speed = 1;          ///< of the hand; faster motion counts as a jump [m/s]
@@ -42,6 +43,9 @@ class Training {
 
   /// Where its device is awaited; empty: the page leads.
   const std::string& awaited() const { return awaited_; }
+
+  const std::string& scene() const { return request_.scene; }  ///< its file
+  bool has_ended() const { return has_ended_; }
 
   /// A message of the page; from one thread.
   void move(const HandMoves& moves, double sent_s) {
