@@ -24,6 +24,8 @@ struct TrainingRequest {
   std::string scene;              ///< file of the scene
   std::string file;               ///< session file to write; it must not exist. Empty: nothing is kept
   std::string shown;              ///< its name as the page knows it
+  double gives_way_n = 20;        ///< force at which the page's hand gives way, see devices::CouplingSettings
+  double gives_way_m = 0;         ///< depth of a tool in tissue at which it does, too; 0: none
   double most_speed = 1;          ///< of the hand; faster motion counts as a jump [m/s]
   devices::DeviceRequest device;  ///< that leads in place of the page, if one is asked for
 };
