@@ -156,6 +156,13 @@ export interface ComparisonResult {
   path_s: [number, number][];
 }
 
+/** In which scene a session was recorded. */
+export interface SceneOfSession {
+  path: string;
+  scene_name: string;
+  scene_key: string; // as Motion has it
+}
+
 /** Whether two sessions can be compared. */
 export interface Comparable {
   comparable: boolean;
@@ -174,6 +181,12 @@ export interface BegunTraining {
   scene: string;
   view: SceneView;
   warnings: Problem[];
+}
+
+/** What happens when a scene goes. */
+export interface Removal {
+  goes: string[]; // the scene first
+  stays: { path: string; why: string }[];
 }
 
 /** Event train_ended. */
