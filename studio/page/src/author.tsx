@@ -248,7 +248,8 @@ function ViewBar({ desk, item, modes, mode, onMode, onVersion }: { desk: Desk; i
   return (
     <div class="view-bar">
       <div class="buttons joined" role="group" aria-label="What is shown">
-        {(["surface", "both", "spheres"] as Shown[]).map((how) => <button key={how} type="button" aria-pressed={scene.how === how} onClick={() => scene.show(how)}>{how}</button>)}
+        {(["surface", "both", "spheres"] as Shown[]).map((how) => <button key={how} type="button" aria-pressed={scene.how === how}
+          title={how === "both" ? "The spheres half as large as they are, so that the surface is seen around them" : undefined} onClick={() => scene.show(how)}>{how}</button>)}
       </div>
       <div class="right">
         {modes.length > 1 && (
