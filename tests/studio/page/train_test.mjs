@@ -357,6 +357,9 @@ step("a worst moment leads to the timeline", async () => {
   await picture(page, "train-to-review");
 });
 
+/** What the list of experts has, by group. */
+const groups = () => page.locator("aside .field:has-text('expert') optgroup").evaluateAll((all) => Object.fromEntries(all.map(({ label, children }) => [label, [...children].map(({ value }) => value)])));
+
 step("an expert's session of another scene is said to be one, in a training and after it", async () => {
   await page.click("header nav button:has-text('Train')");
   const choice = page.locator("aside .field:has-text('expert') select"), warning = page.locator("aside .warning:has-text('of another scene')");
@@ -365,6 +368,7 @@ step("an expert's session of another scene is said to be one, in a training and 
   await takeUp(page);
   await warning.waitFor();
   assert.match(await warning.innerText(), /^liver-press-expert\.ctpm is of another scene than this one: its ghost is not shown/);
+  assert.deepEqual(await groups(), { "of this scene": [kExpert, "again.ctpm", "late-2.ctpm", "late-3.ctpm", "late.ctpm", "mine.ctpm", "wheel.ctpm"], "of other scenes": [kOther, "html.ctpm"] });
   assert.equal(await page.locator("aside .readings dt:text-is('away from your tool')").count(), 0);
   await picture(page, "train-other-scene");
   await choice.selectOption(kExpert);
@@ -377,6 +381,27 @@ step("an expert's session of another scene is said to be one, in a training and 
   assert.match(await warning.innerText(), /kidney instead of liver.*They cannot be compared/);
   assert.ok(await page.locator("aside button.main:text-is('Verify')").count(), "what it offers is to verify alone");
   await picture(page, "train-other-scene-ended");
+});
+
+step("the first expert's session of the scene is proposed for what is recorded, and for nothing else", async () => {
+  await page.click("header nav button:has-text('Review')");
+  await page.click("header nav button:has-text('Train')");
+  const chosen = () => page.locator("aside .field:has-text('expert') select").inputValue();
+  assert.deepEqual((await until(groups, (all) => Object.keys(all).length > 1))["of the scene liver"], [kOther]);
+  assert.equal(await chosen(), "");
+  await begin(page, "kidney");
+  assert.equal(await chosen(), "");
+  await end(page);
+  await page.click("button:has-text('Choose a scene')");
+  await begin(page, "kidney", "mine-1.ctpm");
+  assert.equal(await until(chosen, (path) => path !== ""), kExpert);
+  await takeUp(page);
+  await page.waitForSelector("aside .readings dt:text-is('away from your tool')");
+  await picture(page, "train-proposed");
+  await page.locator("aside .field:has-text('expert') select").selectOption("");
+  await end(page);
+  await page.waitForSelector("aside button.main:text-is('Verify')"); // who chose none gets none
+  await page.click("button:has-text('Choose a scene')");
 });
 
 step("it fits a tablet", async () => {
