@@ -177,6 +177,7 @@ export interface Motion {
 
 export interface BegunTraining {
   awaited: string; // where a device is awaited
+  gives_way: { force_n: number; depth_m: number }; // with which, and at which depth, a hand that the page leads does; 0: at none
   scene_key: string; // as Motion has it
   scene: string;
   view: SceneView;

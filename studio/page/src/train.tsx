@@ -228,7 +228,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
   const frame = trainer?.scene?.frame ?? null, view = trainer?.scene?.view ?? null;
   const hands = frame?.second ? [frame, frame.second] : frame ? [frame] : [];
   const force = Math.hypot(...(trainer?.ownFrame?.force ?? [0]));
-  const limit = view?.damage_force_n || kForceLimit;
+  const limit = view?.damage_force_n || kForceLimit, givesWay = trainer?.givesWay ?? null;
   sound.current.sound(force / limit);
 
   return (
@@ -272,6 +272,9 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
             <div ref={bar} class={force > limit ? "over" : ""} />
             <output>{newtons(force)}</output>
           </div>
+        )}
+        {phase === "running" && givesWay && (
+          <p class="busy" role="status">The hand gives way: a mouse presses {"force_n" in givesWay ? `with ${newtons(givesWay.force_n, 0)} at most` : `${millimetres(givesWay.depth_m, 0)} deep at most`}</p>
         )}
         <Problems error={error} />
       </div>
