@@ -3,9 +3,9 @@
 
 #include "recordings/session_reader.h"
 #include "scenes/scene_file.h"
-#include "studio/compare/session_measures.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/server/call_table.h"
+#include "studio/server/hand_limits.h"
 #include "studio/server/scene_text.h"
 #include "studio/server/session_scenes.h"
 #include "studio/session/record_session.h"
@@ -58,18 +58,6 @@ devices::DeviceRequest device_of(Parameters& parameters) {
   return device;
 }
 
-/// A mouse does not push back. What tissue bears limits a hand that it leads: twice the limits at which the scene
-/// counts it as damaged, so that a trainee can go too far, and sees it, but not through the organ.
-void limit_hand(const scenes::SceneSpec& scene, const Model& model, TrainingRequest& request) {
-  constexpr double kTimes = 2;
-  /// Where a scene has no limit [N]: more than the scripts that ship press and cut with (14.6), and less than what
-  /// pushes a ball right through the kidney (17).
-  constexpr double kOtherwise = 15;
-  const double force = loading::damage_force_of(scene);
-  request.gives_way_n = force > 0 ? kTimes * force : kOtherwise;
-  request.gives_way_m = kTimes * compare::damage_depth_of(model);
-}
-
 }  // namespace
 
 Result<std::string> begin_training(Parameters& parameters, const CallContext& context) {
@@ -108,13 +96,13 @@ Result<std::string> begin_training(Parameters& parameters, const CallContext& co
   if (!start) return Error{scene_path, "stopped", ""};
   const scenes::SceneText& scene = kept->scene().scene;
   const std::string view = view_json(scene.spec, start->model);
-  limit_hand(scene.spec, start->model, request);
+  request.limits = limits_of_hand(scene.spec, start->model);
   const Result<std::string> awaited = context.desk->train(start, request, stage);
   if (!awaited) return awaited.errors();
   output::JsonWriter warnings;
   write_errors(warnings, scene.warnings);
   output::JsonWriter way;
-  way.begin_object().member("force_n", request.gives_way_n).member("depth_m", request.gives_way_m).end_object();
+  way.begin_object().member("force_n", request.limits.force_n).member("depth_m", request.limits.depth_m).end_object();
   return "{\"scene\": " + json_text(scene_path) + ", \"view\": " + view + ", \"warnings\": " + warnings.text() +
          ", \"awaited\": " + json_text(*awaited) + ", \"gives_way\": " + way.text() +
          ", \"scene_key\": " + json_text(scene_key(start->model)) + "}";

@@ -12,6 +12,7 @@
 #include "recordings/session.h"
 #include "studio/devices/device_source.h"
 #include "studio/devices/open_device.h"
+#include "studio/server/hand_limits.h"
 #include "studio/server/newest_state.h"
 #include "studio/server/outbox.h"
 #include "studio/server/page_hand.h"
@@ -24,8 +25,7 @@ struct TrainingRequest {
   std::string scene;              ///< file of the scene
   std::string file;               ///< session file to write; it must not exist. Empty: nothing is kept
   std::string shown;              ///< its name as the page knows it
-  double gives_way_n = 20;        ///< force at which the page's hand gives way, see devices::CouplingSettings
-  double gives_way_m = 0;         ///< depth of a tool in tissue at which it does, too; 0: none
+  HandLimits limits;              ///< of the hands that the page leads
   double most_speed = 1;          ///< of the hand; faster motion counts as a jump [m/s]
   devices::DeviceRequest device;  ///< that leads in place of the page, if one is asked for
 };

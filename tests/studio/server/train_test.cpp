@@ -62,17 +62,19 @@ TEST_F(TrainingTest, APageLeadsNoBallThroughAnOrgan) {
     fs::copy(fs::path(CTPM_SOURCE_DIR) / "scenes" / name, folder_.path() / name);
   struct Case {
     const char* scene;
-    double x, y, top, force_n, depth_m;  // of the surface below the hand; where it gives way
+    double x, y, top, force_n, least_m, most_m;  // of the surface below the hand; where it gives way
   };
-  for (const Case& one :
-       {Case{"kidney.json", -0.015, 0, 0.056, 15, 0}, Case{"liver.json", -0.045, 0.03, 0.106, 15, 0.024}}) {
+  for (const Case& one : {Case{"kidney.json", -0.015, 0, 0.056, 15, 0.018, 0.025},
+                          Case{"liver.json", -0.045, 0.03, 0.106, 15, 0.024, 0.024}}) {
     const Serving serving(folder_.path());
     SocketClient client(serving);
     const std::string file = std::string(one.scene) + ".ctpm";
     const nlohmann::json begun = client.call("train.begin", {{"scene", one.scene}, {"output", file}, {"stage", 2}});
     ASSERT_TRUE(begun.contains("result")) << begun;
     EXPECT_EQ(begun["result"]["gives_way"]["force_n"], one.force_n);
-    EXPECT_NEAR(begun["result"]["gives_way"]["depth_m"].get<double>(), one.depth_m, 1e-12);
+    const double depth_m = begun["result"]["gives_way"]["depth_m"];
+    EXPECT_GE(depth_m, one.least_m);  // the kidney is 45 mm thick, the liver is damaged 12 mm deep
+    EXPECT_LE(depth_m, one.most_m);
     // It stands until ticks have begun; then 0.3 m/s down, right through, and it stands again.
     const auto begin = std::chrono::steady_clock::now();
     for (int i = 0; i < 250; ++i) {
@@ -90,7 +92,7 @@ TEST_F(TrainingTest, APageLeadsNoBallThroughAnOrgan) {
     const double force = ended["max_force_n"], depth = ended["max_depth_m"];
     EXPECT_GT(force, 0.4 * one.force_n) << ended;
     EXPECT_LT(force, 1.1 * one.force_n) << ended;
-    EXPECT_LT(depth, one.depth_m > 0 ? one.depth_m + 5e-3 : 0.02) << ended;
+    EXPECT_LT(depth, depth_m + 5e-3) << ended;
     EXPECT_EQ(testing::run_ctpm({"verify", file}, folder_.path()).code, 0);
   }
 }
