@@ -165,6 +165,7 @@ step("by keyboard too", async () => {
   assert.deepEqual(await until(listed, (names) => names.includes("skin")), ["kidney", "skin"]);
   await more("skin").focus();
   await page.keyboard.press("Enter");
+  await page.waitForSelector(".scene-form input:focus");
   for (const key of ["Tab", "Enter"]) await page.keyboard.press(key);
   await page.waitForSelector(".scene-form button:focus:text-is('Remove')");
   await page.keyboard.press("Enter");
