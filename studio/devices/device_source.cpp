@@ -92,7 +92,7 @@ std::optional<Inputs> DeviceSource::next(std::int64_t, const stepping::StepRepor
   if (tool != tool_ || tool < 0)
     coupling_.reset(*hand_);
   else
-    coupling_.step(*hand_, last.tool_force);
+    coupling_.step(*hand_, last.tool_force, last.depth);
   tool_ = tool;
   send_force(has_new_pose);
   age_ = std::max(now - guard_.pose_arrival(), 1e-9);

@@ -109,9 +109,10 @@ std::string describe(const DeviceRequest& request, const DeviceMap& map) {
   const Quat q = map.scene_from_device;
   std::snprintf(text, sizeof text,
                 "scale %.9g, offset_mm %.9g %.9g %.9g, rotation %.9g %.9g %.9g %.9g, tip %.9g %.9g %.9g, "
-                "most_force_n %.9g, stiffness_n_per_m %.9g",
+                "most_force_n %.9g, stiffness_n_per_m %.9g, gives_way_n %.9g, gives_way_mm %.9g",
                 map.scale, map.offset.x * 1e3, map.offset.y * 1e3, map.offset.z * 1e3, q.w, q.x, q.y, q.z, map.tip.x,
-                map.tip.y, map.tip.z, request.most_force_n, request.stiffness_n_per_m);
+                map.tip.y, map.tip.z, request.most_force_n, request.stiffness_n_per_m, request.gives_way_n,
+                request.gives_way_mm);
   return text;
 }
 
@@ -191,6 +192,7 @@ Result<FollowedDevice> follow_device(const DeviceRequest& request, std::unique_p
   settings.guard.give_up_after = request.timeout_s;
   limit_reach(settings, model);
   settings.coupling.stiffness = request.stiffness_n_per_m;
+  settings.coupling.most_force = request.gives_way_n, settings.coupling.most_depth = 1e-3 * request.gives_way_mm;
   settings.most_force = request.most_force_n;
   FollowedDevice followed;
   followed.source = std::make_unique<DeviceSource>(std::move(device), settings, model.tick);
@@ -203,6 +205,7 @@ DeviceRequest as_second_hand(DeviceRequest request, const DeviceRequest& first) 
   request.interface = first.interface, request.allowed = first.allowed, request.scale = first.scale;
   request.most_speed_mm_per_s = first.most_speed_mm_per_s, request.timeout_s = first.timeout_s;
   request.most_force_n = first.most_force_n, request.stiffness_n_per_m = first.stiffness_n_per_m;
+  request.gives_way_n = first.gives_way_n, request.gives_way_mm = first.gives_way_mm;
   return request;
 }
 

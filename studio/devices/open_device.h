@@ -26,7 +26,8 @@ struct DeviceRequest {
   std::vector<double> offset_mm, rotation, tip;  ///< 3, 4 (w x y z) and 3 numbers, or none
   double most_speed_mm_per_s = 1000, timeout_s = 5;
   double most_force_n = 3, stiffness_n_per_m = 1000;
-  std::size_t hand = 0;  ///< in Inputs
+  double gives_way_n = 20, gives_way_mm = 0;  ///< see CouplingSettings: most_force, most_depth
+  std::size_t hand = 0;                       ///< in Inputs
 };
 
 /// The description of a device for the second hand: `request`, with what both hands share taken from `first`: where to

@@ -16,18 +16,24 @@ void VirtualCoupling::reset(const Pose& hand) {
   velocity_ = {}, tool_force_ = {};
 }
 
-void VirtualCoupling::step(const Pose& hand, Vec3 tissue_force) {
+void VirtualCoupling::step(const Pose& hand, Vec3 tissue_force, double depth) {
   const Vec3 hand_velocity = (hand.position - hand_) / tick_, stretch = hand.position - tool_.position;
   hand_ = hand.position;
 
   // Above the largest force, stiffness and damping are reduced by the same factor.
   const double m = settings_.mass, h = tick_;
   const Vec3 pull = settings_.stiffness * stretch + damping_ * (hand_velocity - velocity_);
-  const double share = std::min(1.0, settings_.most_force / std::max(norm(pull), 1e-300));
+  // Beyond the largest depth the largest force falls, and a drag on the tool keeps it from trembling where both forces
+  // meet.
+  const double over = settings_.most_depth > 0 ? (depth - settings_.most_depth) / kGivesWayOver : 0;
+  const double beyond = std::clamp(over, 0.0, 1.0), drag = beyond * damping_;
+  const double most_force = settings_.most_force * (1 - beyond);
+  const double share = std::min(1.0, most_force / std::max(norm(pull), 1e-300));
   const double k = share * settings_.stiffness, b = share * damping_;
 
-  // m (v' - v) / h = k (stretch - h v') + b (hand_velocity - v') + tissue_force
-  const Vec3 v = (m * velocity_ + h * (k * stretch + b * hand_velocity + tissue_force)) / (m + h * b + h * h * k);
+  // m (v' - v) / h = k (stretch - h v') + b (hand_velocity - v') - drag v' + tissue_force
+  const Vec3 v =
+      (m * velocity_ + h * (k * stretch + b * hand_velocity + tissue_force)) / (m + h * (b + drag) + h * h * k);
   tool_force_ = k * (stretch - h * v) + b * (hand_velocity - v);
   velocity_ = v;
   tool_.position = tool_.position + h * v;

@@ -8,7 +8,8 @@ namespace ctpm::devices {
 struct CouplingSettings {
   double stiffness = 1000;  ///< of the spring between hand and tool [N/m], > 0
   double mass = 0.05;       ///< virtual mass of the tool [kg], > 0: high enough for stability on stiff tissue
-  double most_force = 20;   ///< largest force of the spring on the tool [N], > 0
+  double most_force = 20;   ///< largest force of the spring on the tool, at which the hand gives way [N], > 0
+  double most_depth = 0;    ///< depth of the tool in tissue at which it gives way, too [m]; 0: none
   double turn_time = 5e-3;  ///< time constant with which the tool follows the hand's rotation [s], > 0
   double most_turn = 10;    ///< largest angular speed of the tool [rad/s], > 0
 };
@@ -24,9 +25,9 @@ class VirtualCoupling {
   /// Puts the tool at the hand, at rest.
   void reset(const Pose& hand);
 
-  /// Advances one tick: the hand is at `hand`; `tissue_force` [N] is the tissue's force on the tool in the tick before.
-  /// The spring is integrated implicitly, so that it is stable at any stiffness.
-  void step(const Pose& hand, Vec3 tissue_force);
+  /// Advances one tick: the hand is at `hand`; `tissue_force` [N] is the tissue's force on the tool in the tick before,
+  /// `depth` [m] how deep the tool was. The spring is integrated implicitly, so that it is stable at any stiffness.
+  void step(const Pose& hand, Vec3 tissue_force, double depth = 0);
 
   const Pose& tool() const { return tool_; }
 
@@ -34,6 +35,9 @@ class VirtualCoupling {
   Vec3 hand_force() const { return -tool_force_; }
 
  private:
+  /// Over which the largest force falls to zero behind most_depth [m]: a step would make the tool tremble there.
+  static constexpr double kGivesWayOver = 4e-3;
+
   CouplingSettings settings_;
   double tick_, damping_;
   Pose tool_;

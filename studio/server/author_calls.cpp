@@ -10,6 +10,7 @@
 #include "studio/authoring/import_scene.h"
 #include "studio/output/files.h"
 #include "studio/server/call_table.h"
+#include "studio/server/scene_list.h"
 #include "studio/server/scene_text.h"
 
 namespace ctpm::server {
@@ -21,11 +22,6 @@ std::string revision_of(const std::string& text) {
   recordings::ByteHash hash;
   hash.add(text.data(), text.size());
   return recordings::hash_text(hash.value());
-}
-
-Result<std::string> place_of_scene(const Folder& folder, const std::string& path) {
-  if (!path.ends_with(".json")) return Error{path, "a scene's name must end in .json", ""};
-  return folder.place(path);
 }
 
 }  // namespace

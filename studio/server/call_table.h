@@ -17,6 +17,7 @@ inline Result<recordings::SessionReader> open_reader(const CallContext& context,
 }
 
 Result<std::string> list_folder(Parameters& parameters, const CallContext& context);
+Result<std::string> scenes_of_sessions(Parameters& parameters, const CallContext& context);
 Result<std::string> open_session(Parameters& parameters, const CallContext& context);
 Result<std::string> close_session(Parameters& parameters, const CallContext& context);
 Result<std::string> draw_session(Parameters& parameters, const CallContext& context);
@@ -30,6 +31,10 @@ Result<std::string> begin_training(Parameters& parameters, const CallContext& co
 Result<std::string> end_training(Parameters& parameters, const CallContext& context);
 Result<std::string> read_scene(Parameters& parameters, const CallContext& context);
 Result<std::string> write_scene(Parameters& parameters, const CallContext& context);
+Result<std::string> rename_scene_file(Parameters& parameters, const CallContext& context);
+Result<std::string> plan_scene_removal(Parameters& parameters, const CallContext& context);
+Result<std::string> remove_scene_files(Parameters& parameters, const CallContext& context);
+Result<std::string> restore_scene_files(Parameters& parameters, const CallContext& context);
 Result<std::string> check_scene(Parameters& parameters, const CallContext& context);
 Result<std::string> show_scene(Parameters& parameters, const CallContext& context);
 Result<std::string> import_mesh(Parameters& parameters, const CallContext& context);

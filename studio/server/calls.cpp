@@ -1,13 +1,12 @@
 #include "studio/server/calls.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <string>
 #include <utility>
 
 #include "studio/server/call_table.h"
+#include "studio/server/scene_list.h"
 
 namespace ctpm::server {
 namespace {
@@ -28,6 +27,10 @@ constexpr std::pair<const char*, Call> kCalls[] = {
     {"session.motion", session_motion},
     {"scene.read", read_scene},
     {"scene.write", write_scene},
+    {"scene.rename", rename_scene_file},
+    {"scene.removal", plan_scene_removal},
+    {"scene.remove", remove_scene_files},
+    {"scene.restore", restore_scene_files},
     {"scene.check", check_scene},
     {"scene.show", show_scene},
     {"scene.import", import_mesh},
@@ -39,6 +42,7 @@ constexpr std::pair<const char*, Call> kCalls[] = {
     {"train.end", end_training},
     {"scene.formats", list_formats},
     {"session.comparable", are_comparable},
+    {"session.scenes", scenes_of_sessions},
 };
 
 void write_entries(output::JsonWriter& json, const char* key, const std::vector<FolderEntry>& entries) {
@@ -50,16 +54,6 @@ void write_entries(output::JsonWriter& json, const char* key, const std::vector<
         .member("modified_s", entry.modified_s)
         .end_object();
   json.end_list();
-}
-
-/// Whether a JSON file is a scene, or one that is being written: its beginning names the format, or has organs.
-bool is_scene(const std::filesystem::path& path) {
-  constexpr std::size_t kLooked = 64 << 10;  // [bytes]
-  std::string text(kLooked, '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.read(text.data(), std::streamsize(text.size()));
-  text.resize(std::size_t(file.gcount()));
-  return text.find("\"ctpm-scene\"") != std::string::npos || text.find("\"organs\"") != std::string::npos;
 }
 
 }  // namespace
@@ -78,18 +72,10 @@ Result<std::string> run_call(const std::string& name, Parameters& parameters, co
 
 Result<std::string> list_folder(Parameters& parameters, const CallContext& context) {
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
-  std::vector<FolderEntry> scenes = context.folder.list(".json");
-  std::erase_if(scenes, [&](const FolderEntry& entry) {
-    // Notes, the sidecars of videos and whatever other programs write; scripts and a schema, which name the same keys.
-    for (const char* ending : {".script.json", ".notes.json", ".mp4.json", ".avi.json", "results.json", ".schema.json"})
-      if (entry.path.ends_with(ending)) return true;
-    const bool is_script = entry.path.starts_with("scripts/") || entry.path.find("/scripts/") != std::string::npos;
-    return is_script || !is_scene(context.folder.root() / entry.path);
-  });
   output::JsonWriter json;
   json.begin_object().member("folder", context.folder.root().string());
   write_entries(json, "sessions", context.folder.list(".ctpm"));
-  write_entries(json, "scenes", scenes);
+  write_entries(json, "scenes", scenes_of(context.folder));
   return json.end_object().text();
 }
 

@@ -6,10 +6,12 @@
 
 #include "core/model/result.h"
 #include "studio/server/desk.h"
+#include "studio/server/desks.h"
 #include "studio/server/folder.h"
 #include "studio/server/kept_answers.h"
 #include "studio/server/known_files.h"
 #include "studio/server/parameters.h"
+#include "studio/server/session_scenes.h"
 
 namespace ctpm::server {
 
@@ -22,6 +24,8 @@ struct CallContext {
   KnownFiles* films = nullptr;         ///< an export is added to them, if there are any
   KnownFiles* verified = nullptr;      ///< so is a session that replays as it was recorded; comparisons ask for it
   KeptAnswers* comparisons = nullptr;  ///< known ones are answered from them
+  SessionScenes* scenes = nullptr;     ///< of sessions that were looked at
+  Desks* desks = nullptr;              ///< of all pages; null: no scene is in use
 };
 
 /// Runs the call `name`; PROTOCOL.md lists them. Returns its result as JSON. May take long; any thread may run it.

@@ -1,5 +1,6 @@
 #include "studio/server/desk.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -43,6 +44,24 @@ std::shared_ptr<KeptScene> Desk::kept(const std::string& file, const std::string
   for (const auto& [number, scene] : kept_)
     if (scene && scene->scene().path == file && scene->scene().scene.text == text) return scene;
   return nullptr;
+}
+
+bool Desk::shows_scene(const std::string& file) {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(kept_.begin(), kept_.end(),
+                     [&](const auto& entry) { return entry.second && entry.second->scene().path == file; });
+}
+
+bool Desk::trains_in(const std::string& file) {
+  const std::shared_ptr<Training> running = training();
+  return running && running->scene() == file && !running->has_ended();
+}
+
+void Desk::forget(const std::string& file) {
+  std::vector<std::shared_ptr<KeptScene>> gone;  // end outside of the lock
+  const std::lock_guard lock(mutex_);
+  for (auto& [number, scene] : kept_)
+    if (scene && scene->scene().path == file) gone.push_back(std::exchange(scene, nullptr));
 }
 
 void Desk::show(std::uint32_t number, std::int64_t tick, std::uint32_t request) {

@@ -31,6 +31,12 @@ class Desk {
   std::shared_ptr<KeptScene> kept(std::uint32_t number);
   std::shared_ptr<KeptScene> kept(const std::string& file, const std::string& text);
 
+  /// Whether a stage shows the scene of that file at rest, and whether a session of it runs. forget(): no stage does,
+  /// for the file is about to be gone.
+  bool shows_scene(const std::string& file);
+  bool trains_in(const std::string& file);
+  void forget(const std::string& file);
+
   /// Asks a stage for a moment; nothing happens without such a stage.
   void show(std::uint32_t number, std::int64_t tick, std::uint32_t request);
 

@@ -174,6 +174,7 @@ void HttpConnection::answer_call(const std::string& body) {
     context.should_stop = [&] { return self->services_.ends.load(); };
     context.films = &self->services_.films;
     context.verified = &self->services_.verified, context.comparisons = &self->services_.comparisons;
+    context.desks = &self->services_.desks, context.scenes = &self->services_.scenes;
     const Result<std::string> result = run_call(name, parameters, context);
     finish(result ? http::status::ok : http::status::unprocessable_entity,
            result ? answer(id, *result) : answer(id, result.errors()));

@@ -9,10 +9,12 @@
 #include <string>
 
 #include "studio/server/access.h"
+#include "studio/server/desks.h"
 #include "studio/server/folder.h"
 #include "studio/server/kept_answers.h"
 #include "studio/server/known_files.h"
 #include "studio/server/limits.h"
+#include "studio/server/session_scenes.h"
 #include "studio/server/urgency.h"
 
 namespace ctpm::server {
@@ -28,6 +30,8 @@ struct Services {
   KnownFiles uploads, films;  ///< taken from pages; exported for them
   KnownFiles verified;        ///< sessions that replayed as they were recorded
   KeptAnswers comparisons;
+  SessionScenes scenes;
+  Desks desks;
   std::size_t connections = 0;                           ///< open now; of the network's thread
   std::map<const void*, std::function<void()>> clients;  ///< closes each page; of the network's thread
   std::atomic<bool> ends{false};                         ///< the server is about to stop: calls must end

@@ -58,6 +58,29 @@ Result<std::string> open_session(Parameters& parameters, const CallContext& cont
          "}";
 }
 
+/// Of sessions that cannot be read nothing is said.
+Result<std::string> scenes_of_sessions(Parameters& parameters, const CallContext& context) {
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  const std::vector<FolderEntry> sessions = context.folder.list(".ctpm");
+  SessionScenes own;
+  SessionScenes& scenes = context.scenes ? *context.scenes : own;
+  output::JsonWriter json;
+  json.begin_list();
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
+    if (context.should_stop()) return Error{"", "stopped", ""};
+    context.progress(std::int64_t(i), std::int64_t(sessions.size()));
+    const Result<std::string> file = context.folder.find(sessions[i].path);
+    if (!file) continue;  // it went meanwhile
+    if (const Result<SceneOfSession> scene = scenes.of(*file))
+      json.begin_object()
+          .member("path", std::string_view(sessions[i].path))
+          .member("scene_name", std::string_view(scene->name))
+          .member("scene_key", std::string_view(scene->key))
+          .end_object();
+  }
+  return json.end_list().text();
+}
+
 Result<std::string> close_session(Parameters& parameters, const CallContext& context) {
   const double stage = parameters.number("stage", 0, Desk::kMostStages - 1);
   if (!context.desk) parameters.refuse("stage", "only a page with a WebSocket has stages");

@@ -1,13 +1,13 @@
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 
 #include "recordings/session_reader.h"
 #include "scenes/scene_file.h"
-#include "studio/compare/session_track.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/server/call_table.h"
+#include "studio/server/hand_limits.h"
 #include "studio/server/scene_text.h"
+#include "studio/server/session_scenes.h"
 #include "studio/session/record_session.h"
 
 namespace ctpm::server {
@@ -31,13 +31,6 @@ Result<Done> write_poses(recordings::SessionReader& reader, std::size_t hand, st
     }
   }
   return Done{};
-}
-
-/// What only sessions of one scene share.
-std::string scene_key(const Model& model) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", (unsigned long long)compare::scene_hash(model));
-  return text;
 }
 
 /// A device over OpenIGTLink, as the options of `record` describe it.
@@ -82,6 +75,7 @@ Result<std::string> begin_training(Parameters& parameters, const CallContext& co
   context.desk->end_training();
   const Result<std::string> file = options.text ? context.folder.place(scene_path) : context.folder.find(scene_path);
   if (!file) return file.errors();
+  request.scene = *file;
   if (output) {
     const Result<std::string> place = context.folder.place(*output);
     if (!place) return place.errors();
@@ -102,12 +96,16 @@ Result<std::string> begin_training(Parameters& parameters, const CallContext& co
   if (!start) return Error{scene_path, "stopped", ""};
   const scenes::SceneText& scene = kept->scene().scene;
   const std::string view = view_json(scene.spec, start->model);
+  request.limits = limits_of_hand(scene.spec, start->model);
   const Result<std::string> awaited = context.desk->train(start, request, stage);
   if (!awaited) return awaited.errors();
   output::JsonWriter warnings;
   write_errors(warnings, scene.warnings);
+  output::JsonWriter way;
+  way.begin_object().member("force_n", request.limits.force_n).member("depth_m", request.limits.depth_m).end_object();
   return "{\"scene\": " + json_text(scene_path) + ", \"view\": " + view + ", \"warnings\": " + warnings.text() +
-         ", \"awaited\": " + json_text(*awaited) + ", \"scene_key\": " + json_text(scene_key(start->model)) + "}";
+         ", \"awaited\": " + json_text(*awaited) + ", \"gives_way\": " + way.text() +
+         ", \"scene_key\": " + json_text(scene_key(start->model)) + "}";
 }
 
 Result<std::string> end_training(Parameters& parameters, const CallContext& context) {

@@ -92,6 +92,7 @@ Result<std::map<std::string, std::string>> Training::follow_hands() {
   devices::DeviceRequest device;
   device.buttons = buttons_of(model);
   device.most_speed_mm_per_s = 1e3 * request_.most_speed;
+  device.gives_way_n = request_.limits.force_n, device.gives_way_mm = 1e3 * request_.limits.depth_m;
   device.timeout_s = 1e5;  // a hidden page sends nothing; its reader ends the session
   const auto make_hand = [&](std::size_t number) {
     auto hand = std::make_unique<PageHand>();

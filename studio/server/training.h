@@ -12,6 +12,7 @@
 #include "recordings/session.h"
 #include "studio/devices/device_source.h"
 #include "studio/devices/open_device.h"
+#include "studio/server/hand_limits.h"
 #include "studio/server/newest_state.h"
 #include "studio/server/outbox.h"
 #include "studio/server/page_hand.h"
@@ -21,8 +22,10 @@ namespace ctpm::server {
 
 /// What a page asks for when it begins to train.
 struct TrainingRequest {
+  std::string scene;              ///< file of the scene
   std::string file;               ///< session file to write; it must not exist. Empty: nothing is kept
   std::string shown;              ///< its name as the page knows it
+  HandLimits limits;              ///< of the hands that the page leads
   double most_speed = 1;          ///< of the hand; faster motion counts as a jump [m/s]
   devices::DeviceRequest device;  ///< that leads in place of the page, if one is asked for
 };
@@ -42,6 +45,9 @@ class Training {
 
   /// Where its device is awaited; empty: the page leads.
   const std::string& awaited() const { return awaited_; }
+
+  const std::string& scene() const { return request_.scene; }  ///< its file
+  bool has_ended() const { return has_ended_; }
 
   /// A message of the page; from one thread.
   void move(const HandMoves& moves, double sent_s) {

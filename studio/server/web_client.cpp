@@ -50,6 +50,7 @@ void WebClient::start(const beast::http::request<beast::http::empty_body>& reque
 
 void WebClient::begin() {
   desk_ = std::make_shared<Desk>(shared_from_this());
+  services_.desks.add(desk_);
   is_open_ = true;
   read_next();
   write_next();
@@ -118,6 +119,7 @@ void WebClient::take_call(Parameters& message) {
     context.should_stop = [&] { return *cancelled || self->services_.ends; };
     context.films = &self->services_.films;
     context.verified = &self->services_.verified, context.comparisons = &self->services_.comparisons;
+    context.desks = &self->services_.desks, context.scenes = &self->services_.scenes;
     context.progress = [&](std::int64_t done, std::int64_t total) {
       if (Clock::now() - last < std::chrono::milliseconds(100)) return;
       last = Clock::now();

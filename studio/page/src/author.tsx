@@ -13,6 +13,7 @@ import { Objects } from "./objects";
 import { Empty, Problems, Readings, Section, ShownCommand } from "./parts";
 import type { CameraView, Listing } from "./protocol";
 import { SceneEditor } from "./scene_editor";
+import { SceneList } from "./scene_list";
 import type { Shown } from "./stage_scene";
 import { command, verdictOf } from "./text";
 import { kTurns, Viewer } from "./viewer";
@@ -176,15 +177,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
       take([...e.dataTransfer?.files ?? []]);
     }}>
       <nav class="list" aria-label="Scenes">
-        <h2>Scenes</h2>
-        {listing.scenes.length === 0 && <p class="hint">No scene in this folder yet.</p>}
-        <ul class="scenes">
-          {listing.scenes.map((entry) => (
-            <li key={entry.path}>
-              <button type="button" aria-current={path === entry.path} title={entry.path} onClick={() => open(entry.path)}><span>{entry.path.replace(/\.json$/, "")}</span></button>
-            </li>
-          ))}
-        </ul>
+        <SceneList connection={connection} listing={listing} scene={scene} onOpen={open} onChanged={onChanged} />
         <label class="pick">
           Import a mesh…
           <input type="file" accept={endings.join(",")} onChange={(e) => {
@@ -255,7 +248,8 @@ function ViewBar({ desk, item, modes, mode, onMode, onVersion }: { desk: Desk; i
   return (
     <div class="view-bar">
       <div class="buttons joined" role="group" aria-label="What is shown">
-        {(["surface", "both", "spheres"] as Shown[]).map((how) => <button key={how} type="button" aria-pressed={scene.how === how} onClick={() => scene.show(how)}>{how}</button>)}
+        {(["surface", "both", "spheres"] as Shown[]).map((how) => <button key={how} type="button" aria-pressed={scene.how === how}
+          title={how === "both" ? "The spheres half as large as they are, so that the surface is seen around them" : undefined} onClick={() => scene.show(how)}>{how}</button>)}
       </div>
       <div class="right">
         {modes.length > 1 && (

@@ -3,7 +3,7 @@ import type { JSONPath } from "jsonc-parser";
 import * as three from "three";
 import { takenAlong } from "./belongings";
 import type { Connection } from "./connection";
-import { SceneDocument } from "./document";
+import { type Draft, putDraft, SceneDocument, takeDraft } from "./document";
 import { type Item, itemsOf, listOf, type OrganPose, organPoses } from "./items";
 import type { Json } from "./json_edit";
 import { CallFailed, type Problem, type SceneView, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
@@ -56,6 +56,14 @@ function middleOf(centres: Float32Array): three.Vector3 {
   return box.getCenter(new three.Vector3());
 }
 
+/** What the page has of a scene that was removed, for when it comes back. */
+export interface Gone {
+  path: string;
+  doc: SceneDocument | undefined;
+  draft: Draft | null;
+  wasOpen: boolean;
+}
+
 /** Scenes that were open keep their history while the page is there. */
 const documents = new Map<string, SceneDocument>();
 let lastOpen = "";
@@ -103,10 +111,8 @@ export class AuthorScene {
   async open(path: string): Promise<void> {
     this.doc?.commit();
     const known = documents.get(path);
+    this.close();
     lastOpen = path;
-    this.doc = null, this.shown = null, this.error = null, this.tickTime = null, this.checked = null, this.shownPart = "";
-    this.viewer.set(kAuthorStage, null);
-    this.stage = null;
     this.isLoading = true;
     this.onChange();
     try {
@@ -120,6 +126,46 @@ export class AuthorScene {
       this.isLoading = false, this.error = failure as Error;
       this.onChange();
     }
+  }
+
+  /** Shows no scene. */
+  private close(): void {
+    lastOpen = "";
+    this.doc = null, this.shown = null, this.error = null, this.tickTime = null, this.checked = null, this.shownPart = "";
+    this.viewer.set(kAuthorStage, null);
+    this.stage = null;
+  }
+
+  /** A scene's file has another name now: its history and its draft go with it. */
+  renamed(from: string, to: string): void {
+    putDraft(to, takeDraft(from));
+    const doc = documents.get(from);
+    if (!doc) return;
+    documents.delete(from);
+    documents.set(to, doc);
+    doc.path = to;
+    if (this.doc !== doc) return;
+    lastOpen = to, this.shownPart = ""; // the program shows it by its new name
+    this.changed();
+  }
+
+  /** A scene's file is gone. Its history and its draft are kept by the caller, for restored(). */
+  removed(path: string): Gone {
+    const gone = { path, doc: documents.get(path), draft: takeDraft(path), wasOpen: this.doc?.path === path };
+    documents.delete(path);
+    if (!gone.wasOpen) return gone;
+    for (const timer of Object.values(this.timers)) clearTimeout(timer);
+    this.running?.abort();
+    this.measuring?.abort();
+    this.close();
+    this.onChange();
+    return gone;
+  }
+
+  /** It is there again. */
+  restored({ path, doc, draft }: Gone): void {
+    putDraft(path, draft);
+    if (doc) documents.set(path, doc);
   }
 
   get items(): Item[] {

@@ -26,7 +26,7 @@ export class SceneDocument {
   private valid: Json | undefined;
   private parsed: { text: string; value: Json | undefined } | null = null;
 
-  private constructor(public connection: Connection, readonly path: string, private saved: string, private revision: string, text: string, schema: () => Schema | null) {
+  private constructor(public connection: Connection, public path: string, private saved: string, private revision: string, text: string, schema: () => Schema | null) {
     this.host.className = "editor";
     // In a root of its own, the editor's styles are objects and not elements, which the page's security policy refuses.
     const root = this.host.attachShadow({ mode: "open" });
@@ -35,7 +35,7 @@ export class SceneDocument {
       if (update.selectionSet && update.transactions.some((t) => t.isUserEvent("select.pointer")))
         this.onPlace(getLocation(this.text, update.state.selection.main.head).path);
     });
-    const extensions = editorOf(`The text of ${path}`, schema, [listen]);
+    const extensions = editorOf("The text of the scene", schema, [listen]);
     this.view = new EditorView({ state: EditorState.create({ doc: saved, extensions }), root, parent: root });
     if (text !== saved) this.setText(text, ++this.gestures); // a draft can be undone
   }
@@ -155,8 +155,8 @@ export class SceneDocument {
 
   /** Looks whether the file is another one than was read or written here, or gone. */
   async lookOnDisk(): Promise<void> {
-    const { revision, onDisk } = this, file = await this.readFile();
-    if (revision !== this.revision) return; // it was saved or read meanwhile
+    const { revision, onDisk, path } = this, file = await this.readFile();
+    if (revision !== this.revision || path !== this.path) return; // it was saved, read or renamed meanwhile
     this.onDisk = (file?.revision ?? kNoFile) === revision ? "same" : file ? "changed" : "gone";
     if (this.onDisk !== onDisk) this.onChange();
   }
@@ -209,13 +209,32 @@ export class SceneDocument {
 
   private keepDraft(): void {
     const { text, path } = this;
-    if (text === this.saved) {
-      for (const key of [draftKey(path), draftedKey(path)]) localStorage.removeItem(key);
-    } else {
-      localStorage.setItem(draftedKey(path), JSON.stringify({ text: this.saved, revision: this.revision }));
-      localStorage.setItem(draftKey(path), text);
-    }
+    if (text === this.saved) takeDraft(path);
+    else putDraft(path, { text, drafted: JSON.stringify({ text: this.saved, revision: this.revision }) });
   }
+}
+
+/** What is kept of a scene that was not saved. */
+export interface Draft {
+  text: string;
+  drafted: string | null; // the file that it began with
+}
+
+/** Takes a draft out of the browser's storage; null: there is none. */
+export function takeDraft(path: string): Draft | null {
+  const text = localStorage.getItem(draftKey(path)), drafted = localStorage.getItem(draftedKey(path));
+  for (const key of [draftKey(path), draftedKey(path)]) localStorage.removeItem(key);
+  return text === null ? null : { text, drafted };
+}
+
+export function putDraft(path: string, draft: Draft | null): void {
+  if (!draft) return;
+  if (draft.drafted !== null) localStorage.setItem(draftedKey(path), draft.drafted);
+  localStorage.setItem(draftKey(path), draft.text);
+}
+
+export function hasDraft(path: string): boolean {
+  return localStorage.getItem(draftKey(path)) !== null;
 }
 
 const kNoFile = "none"; // revision of a file that is not there

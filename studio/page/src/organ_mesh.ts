@@ -10,14 +10,30 @@ function linear(c: number): number {
 const kBlood = [0.34, 0, 0.006], kFilm = 0.34;
 const kLip = [0.58, 0.1, 0.09], kNoLip = [1, 1, 1];
 
-/** Of the outside of an organ, and of the walls of its cuts. They outlive its triangles: the browser would compile them
-    again for each cut, which takes longer than everything else in a picture. */
+const kFront = "0.4", kAside = "0.9"; // how much glass covers of what is behind it, seen from the front and from aside
+const kRim = "vec3(0.5, 0.46, 0.42)"; // light on its outline, which a dark organ needs on a dark ground
+
+/** An organ's outside as glass: clear where it faces the viewer, and seen where it turns away. */
+function makeGlass(material: three.MeshPhongMaterial): three.MeshPhongMaterial {
+  material.transparent = true, material.depthWrite = false;
+  material.onBeforeCompile = (shader) => {
+    shader.fragmentShader = shader.fragmentShader.replace("#include <opaque_fragment>", `
+      float turned = 1.0 - clamp(dot(normal, normalize(vViewPosition)), 0.0, 1.0);
+      diffuseColor.a = mix(${kFront}, ${kAside}, turned * turned);
+      outgoingLight += ${kRim} * turned * turned * turned * turned;
+      #include <opaque_fragment>`);
+  };
+  return material;
+}
+
+/** Of the outside of an organ, of the walls of its cuts, and of an outside of glass. They outlive its triangles: the browser
+    would compile them again for each cut, which takes longer than everything else in a picture. */
 export function organMaterials(look: OrganView): three.MeshPhongMaterial[] {
   const shine = 0.04 + 0.09 * look.wetness;
   const material = (side: three.Side) =>
     new three.MeshPhongMaterial({ vertexColors: true, shininess: 34, specular: new three.Color(shine, shine, shine), side });
   // As in videos, what faces away is seen of the walls of cuts alone.
-  return [material(three.FrontSide), material(three.DoubleSide)];
+  return [material(three.FrontSide), material(three.DoubleSide), makeGlass(material(three.FrontSide))];
 }
 
 /** The moving surface of one organ, with the walls of its cuts. */
@@ -29,7 +45,6 @@ export class OrganMesh {
   private readonly whole: three.Mesh; // of all of them, to be met by rays
   private readonly facing: Uint32Array; // those that are drawn: the outer ones that face the viewer, and the walls of cuts
   private readonly faced = new three.Vector3(NaN, NaN, NaN); // the viewer's place when they were found
-  private drawsAll = true;
   private isColoured = false;
 
   /** `materials`: those of organMaterials(), which are the caller's. */
@@ -73,27 +88,19 @@ export class OrganMesh {
     this.mesh.position.set(0, 0, 0), this.mesh.quaternion.identity(), this.mesh.scale.setScalar(1);
   }
 
-  /** 0: not drawn, 1: not transparent. */
-  setOpacity(opacity: number): void {
-    this.mesh.visible = opacity > 0;
-    if (this.materials[0].opacity === opacity) return;
-    for (const material of this.materials) {
-      material.opacity = opacity;
-      material.transparent = opacity < 1;
-      material.depthWrite = opacity === 1;
-      material.needsUpdate = true;
-    }
-    this.materials[0].side = opacity < 1 ? three.DoubleSide : three.FrontSide;
+  /** Draws the outside as tissue, or as glass through which its spheres are seen, or not at all. */
+  show(as: "tissue" | "glass" | "nothing"): void {
+    const [outside, walls, glass] = this.materials;
+    this.mesh.visible = as !== "nothing";
+    this.mesh.material = [as === "glass" ? glass : outside, walls];
   }
 
   /** Draws of the outside what faces a viewer alone, which is half of it: where the processor draws, a triangle that
       is left out only in the end costs as much as one that is seen. */
   drawFacing(viewer: three.Vector3): void {
-    if (this.materials[0].side !== three.FrontSide) return this.drawAll();
     const eye = this.mesh.worldToLocal(viewer.clone());
     if (eye.equals(this.faced)) return;
     this.faced.copy(eye);
-    this.drawsAll = false;
     const { position: p, index, facing } = this, outer = 3 * this.triangles.outerTriangleCount;
     let count = 0;
     for (let t = 0; t < outer; t += 3) {
@@ -105,14 +112,6 @@ export class OrganMesh {
     }
     facing.set(index.subarray(outer), count);
     this.draws(count);
-  }
-
-  private drawAll(): void {
-    if (this.drawsAll) return;
-    this.drawsAll = true;
-    this.faced.setScalar(NaN);
-    this.facing.set(this.index);
-    this.draws(3 * this.triangles.outerTriangleCount);
   }
 
   /** The first `outer` indices are of the outside, and those of walls follow. */

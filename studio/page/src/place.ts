@@ -20,6 +20,7 @@ export interface Place {
   align?: Alignment; // what brings both together; none: `ahead`
   look?: Look; // how it is seen; none: as it was
   time?: number; // of the session [s]
+  zoom?: { from: number; to: number }; // what its timeline shows [s]; none: everything
   besideTime?: number; // in place of time: of the session beside, of which this is the comparison [s]
   comparison?: ComparisonResult;
 }
@@ -34,6 +35,7 @@ export function hashOf(room: Room, place: Place): string {
   if (place.beside && place.ahead !== undefined) hash.set("ahead", place.ahead.toFixed(3));
   if (place.beside && place.align) hash.set("align", place.align);
   if (place.time !== undefined) hash.set("t", place.time.toFixed(3));
+  if (place.session && place.zoom) hash.set("from", place.zoom.from.toFixed(3)), hash.set("to", place.zoom.to.toFixed(3));
   if (place.session && place.look) for (const key of kLookKeys) if (place.look[key] !== kPlainLook[key]) hash.set(key, place.look[key]);
   return hash.toString();
 }
@@ -42,6 +44,7 @@ export function hashOf(room: Room, place: Place): string {
 export function readHash(text: string): { room: string | null; place: Place } {
   const hash = new URLSearchParams(text);
   const number = (key: string) => (hash.has(key) ? Number(hash.get(key)) || 0 : undefined);
+  const from = number("from"), to = number("to");
   const look: Look = { ...kPlainLook };
   for (const key of kLookKeys) look[key] = hash.get(key) ?? kPlainLook[key];
   return {
@@ -49,6 +52,7 @@ export function readHash(text: string): { room: string | null; place: Place } {
     place: {
       session: hash.get("session") ?? undefined, beside: hash.get("beside") ?? undefined, ahead: number("ahead"), time: number("t"),
       align: kAlignments.find((known) => known === hash.get("align")), look,
+      zoom: from !== undefined && to !== undefined && to > from ? { from, to } : undefined,
     },
   };
 }

@@ -44,6 +44,7 @@ export class Player {
   otherScene = ""; // why the session beside cannot be compared: it is of another scene; empty: it can
   isPathWanted = false; // a link leads to sessions along their path, which is known once they are compared
   look: Look = kPlainLook; // how they are seen
+  zoom: { from: number; to: number } | null = null; // what the timeline shows, of stage 0 [s]; null: everything
   isPlaying = false;
   pictureAfter: number | null = null; // time from the last move to its picture, a glimpse or not [ms]
   replayedAfter: number | null = null; // the same, to the replayed one [ms]
@@ -84,8 +85,9 @@ export class Player {
   }
 
   /** Opens what a place names, at its moment: both sessions at once, and no picture of another moment is asked for. */
-  async openAt({ session, beside, ahead, align, time, besideTime, comparison }: Place): Promise<void> {
+  async openAt({ session, beside, ahead, align, time, besideTime, comparison, zoom }: Place): Promise<void> {
     if (session === undefined) return;
+    this.zoom = null;
     if (beside === undefined) this.close(1);
     else this.drop(1); // nothing of it is to be seen beside the new one
     const [first, second] = await Promise.allSettled([this.load(0, session), beside === undefined ? null : this.load(1, beside)]);
@@ -100,6 +102,7 @@ export class Player {
       else if (!isByEvent && (!hasBoth || !this.bringTogether("contact"))) this.offset = 0;
       if (hasBoth && besideTime !== undefined && comparison) this.moveBeside(besideTime, comparison);
       else this.move(time ?? 0);
+      this.zoom = zoom ?? null;
     }
     this.onChange();
     for (const one of [first, second]) if (one.status === "rejected") throw one.reason;
@@ -201,9 +204,18 @@ export class Player {
     this.onChange();
   }
 
+  /** What plays, or is moved to, comes into what the timeline shows. */
+  private goTo(time: number): void {
+    const { zoom, span } = this, hasMoved = time !== this.time;
+    this.time = time;
+    if (!zoom || !hasMoved || (time >= zoom.from && time <= zoom.to)) return;
+    const length = zoom.to - zoom.from, from = Math.min(Math.max(time - 0.1 * length, span.from), span.to - length);
+    this.zoom = { from, to: from + length };
+  }
+
   move(time: number): void {
     const { from, to } = this.span;
-    this.time = Math.min(Math.max(wholeMicroseconds(time), from), to);
+    this.goTo(Math.min(Math.max(wholeMicroseconds(time), from), to));
     this.movedAt = performance.now();
     this.pictureAfter = this.replayedAfter = null;
     this.ask();
@@ -265,7 +277,7 @@ export class Player {
     const [first, second] = [0, 1].map((stage) => this.tracks.get(stage)?.session.path);
     return {
       session: first, beside: second, ahead: second && this.besideAt(this.time) - this.time, align: this.aligned || undefined,
-      time: this.time, look: this.look,
+      time: this.time, look: this.look, zoom: this.zoom ?? undefined,
     } as Place;
   }
 
@@ -303,7 +315,7 @@ export class Player {
 
   play(): void {
     if (this.isPlaying || !this.tracks.has(0)) return;
-    if (this.time >= this.span.to) this.time = this.span.from;
+    if (this.time >= this.span.to) this.goTo(this.span.from);
     this.isPlaying = true;
     this.playedAt = performance.now();
     this.steps = [];
@@ -322,7 +334,7 @@ export class Player {
     if (this.waiting.size === 0) {
       const by = Math.min((now - this.playedAt) / 1e3, kLongestStep) * this.speed;
       this.playedAt = now;
-      this.time = Math.min(wholeMicroseconds(this.time + by), this.span.to);
+      this.goTo(Math.min(wholeMicroseconds(this.time + by), this.span.to));
       this.steps.push([now, by]);
       while (this.steps.length > 2 && now - this.steps[0][0] > 1000) this.steps.shift();
       const span = (now - this.steps[0][0]) / 1e3;

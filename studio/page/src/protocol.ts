@@ -156,6 +156,13 @@ export interface ComparisonResult {
   path_s: [number, number][];
 }
 
+/** In which scene a session was recorded. */
+export interface SceneOfSession {
+  path: string;
+  scene_name: string;
+  scene_key: string; // as Motion has it
+}
+
 /** Whether two sessions can be compared. */
 export interface Comparable {
   comparable: boolean;
@@ -170,10 +177,17 @@ export interface Motion {
 
 export interface BegunTraining {
   awaited: string; // where a device is awaited
+  gives_way: { force_n: number; depth_m: number }; // with which, and at which depth, a hand that the page leads does; 0: at none
   scene_key: string; // as Motion has it
   scene: string;
   view: SceneView;
   warnings: Problem[];
+}
+
+/** What happens when a scene goes. */
+export interface Removal {
+  goes: string[]; // the scene first
+  stays: { path: string; why: string }[];
 }
 
 /** Event train_ended. */

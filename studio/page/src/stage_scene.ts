@@ -9,6 +9,7 @@ const kSteel: Vector = [0.5, 0.53, 0.57];
 const kHandle: Vector = [0.05, 0.055, 0.065];
 const kCloth: Vector = [0.16, 0.22, 0.24]; // of obstacles
 const kAnchored = 0x7fb8ff;
+const kBead = 0.5; // of a sphere's radius, where the surface is to be seen around it
 
 export type Shown = "surface" | "both" | "spheres";
 
@@ -58,17 +59,20 @@ export class StageScene {
   /** The spheres at rest, which show() shows. */
   setSpheres(spheres: Spheres): void {
     for (const mesh of this.spheres) this.scene.remove(mesh), mesh.dispose();
+    this.organSpheres = spheres.organs;
     this.spheres = spheres.organs.map((organ, i) => sphereMesh(organ, this.view.organs[i].layer_colours));
     for (const mesh of this.spheres) this.scene.add(mesh);
-    this.organSpheres = spheres.organs;
     this.show(this.shown);
   }
 
   /** The surfaces, the spheres by layer, or both. */
   show(shown: Shown): void {
     this.shown = shown;
-    for (const organ of this.organs) organ.setOpacity(shown === "surface" ? 1 : shown === "both" ? 0.25 : 0);
-    for (const mesh of this.spheres) mesh.visible = shown !== "surface";
+    for (const organ of this.organs) organ.show(shown === "surface" ? "tissue" : shown === "both" ? "glass" : "nothing");
+    this.spheres.forEach((mesh, i) => {
+      mesh.visible = shown !== "surface";
+      placeSpheres(mesh, this.organSpheres[i], shown === "both" ? kBead : 1);
+    });
   }
 
   /** Where a ray from a camera meets an organ first: the place, the normal of the surface there, the organ. */
@@ -204,9 +208,8 @@ function sphereMesh(spheres: OrganSpheres, colours: Vector[]): three.InstancedMe
   const count = spheres.layer.length;
   const shape = new three.SphereGeometry(spheres.radius, 12, 8);
   const mesh = new three.InstancedMesh(shape, new three.MeshPhongMaterial({ specular: 0x222222 }), count);
-  const place = new three.Matrix4(), colour = new three.Color();
+  const colour = new three.Color();
   for (let i = 0; i < count; ++i) {
-    mesh.setMatrixAt(i, place.makeTranslation(spheres.centre[3 * i], spheres.centre[3 * i + 1], spheres.centre[3 * i + 2]));
     const layer = colours[Math.min(spheres.layer[i], colours.length) - 1] ?? [0.6, 0.6, 0.6];
     if (spheres.anchored[i]) colour.set(kAnchored);
     else colour.setRGB(...layer, three.SRGBColorSpace);
@@ -214,6 +217,13 @@ function sphereMesh(spheres: OrganSpheres, colours: Vector[]): three.InstancedMe
   }
   mesh.frustumCulled = false;
   return mesh;
+}
+
+/** Draws them so many times as large as they are. */
+function placeSpheres(mesh: three.InstancedMesh, { centre }: OrganSpheres, size: number): void {
+  const place = new three.Matrix4().makeScale(size, size, size);
+  for (let i = 0; i < mesh.count; ++i) mesh.setMatrixAt(i, place.setPosition(centre[3 * i], centre[3 * i + 1], centre[3 * i + 2]));
+  mesh.instanceMatrix.needsUpdate = true;
 }
 
 /** An arrow of 30 mm along +y. */

@@ -70,7 +70,9 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
   const first = player.tracks.get(0)?.timeline ?? null, second = player.tracks.get(1)?.timeline ?? null;
   const { span, offset, path, otherScene } = player;
   const rows = useRef<{ element: HTMLElement; at(): (number | null)[]; digits: number }[]>([]); // what each writes beside its name
-  const [zoom, setZoom] = useState<{ from: number; to: number } | null>(null); // null: everything is shown
+  const [, setDrawn] = useState(0);
+  const { zoom } = player;
+  const setZoom = (to: Player["zoom"]) => (player.zoom = to, setDrawn((n) => n + 1));
   const from = Math.max(zoom?.from ?? span.from, span.from), to = Math.max(Math.min(zoom?.to ?? span.to, span.to), from);
   const shareOf = (time: number) => (to > from ? (time - from) / (to - from) : 0);
 
@@ -159,15 +161,6 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
     if (Math.abs(sideways) > Math.abs(event.shiftKey ? 0 : event.deltaY)) panBy(Math.sign(sideways) * 0.1 * (to - from));
     else if (event.deltaY !== 0) zoomBy(event.deltaY > 0 ? kZoomStep : 1 / kZoomStep, from + shareAt(event) * (to - from));
   };
-  // What plays, or is moved to, comes into what is shown.
-  const followed = useRef(player.time);
-  useEffect(() => {
-    const hasMoved = followed.current !== player.time;
-    followed.current = player.time;
-    if (!zoom || !hasMoved || (player.time >= from && player.time <= to)) return;
-    const length = to - from, begin = Math.min(Math.max(player.time - 0.1 * length, span.from), span.to - length);
-    setZoom({ from: begin, to: begin + length });
-  });
   useEffect(() => {
     const press = (event: KeyboardEvent) => {
       if ((event.target as HTMLElement).closest("input:not([type=range]), textarea, select") || event.ctrlKey || event.metaKey || event.altKey) return;

@@ -3,8 +3,9 @@ import { Measures, Outcome } from "./compare";
 import type { Connection } from "./connection";
 import { DeviceForm } from "./device";
 import { deviceParameters, deviceWords, storedDevice, storeDevice } from "./device_choice";
+import { ExpertChoice, proposedExpert } from "./expert_choice";
 import { Empty, HeldButton, Problems, Readings, Section, ShownCommand, Working } from "./parts";
-import { type CameraView, type Comparable, type ComparisonResult, type EndedTraining, type Listing, type Motion, problemText } from "./protocol";
+import { type CameraView, type Comparable, type ComparisonResult, type EndedTraining, type Listing, type Motion, problemText, type SceneOfSession } from "./protocol";
 import { behind, command, millimetres, newtons, seconds, tickRows, underMs } from "./text";
 import type { Place } from "./place";
 import { ForceSound } from "./sound";
@@ -58,7 +59,9 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
   const [scene, setScene] = useState("");
   const [chosenName, setChosenName] = useState<string | null>(tryScene ? "" : null); // null: the page's; empty: nothing is recorded
   const [output, setOutput] = useState(""); // the session that is recorded; empty: none
-  const [expert, setExpert] = useState("");
+  const [sceneKey, setSceneKey] = useState(""); // of the scene of the session that runs or has ended; empty: not known
+  const [scenes, setScenes] = useState<SceneOfSession[]>([]); // of the sessions, once they are known
+  const [chosenExpert, setChosenExpert] = useState<string | null>(null); // null: the page's proposal for what is recorded; empty: none
   const [device, setDevice] = useState(storedDevice), [waits, setWaits] = useState("");
   const [ended, setEnded] = useState<EndedTraining | null>(null);
   const [error, setError] = useState<Error | null>(null);
@@ -105,15 +108,16 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
   /** `like`: the session before, of which this one's name differs by its number. */
   const begin = useCallback(async (path: string, like?: string) => {
     if (!trainer) return;
-    setScene(path), setError(null), setEnded(null), setWaits(""), setPhase("loading");
+    setScene(path), setSceneKey(""), setError(null), setEnded(null), setWaits(""), setPhase("loading");
     storeDevice(device);
     loading.current = new AbortController();
     try {
       // Somebody else may have taken a name meanwhile.
       const free = like || (chosenName === null && kUsualName), name = free ? freeName(await connection.call<Listing>("folder.list"), free) : chosenName!;
       setOutput(name);
-      await trainer.begin(path, path === tryScene && !name ? tryText : undefined, name || undefined,
+      const begun = await trainer.begin(path, path === tryScene && !name ? tryText : undefined, name || undefined,
         path === tryScene ? undefined : deviceParameters(device), path === tryScene ? tryView : undefined, loading.current.signal);
+      setSceneKey(begun.scene_key);
       setPhase("running");
       canvas.current?.focus();
     } catch (failure) {
@@ -126,6 +130,8 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
     if (trainer && tryScene) void begin(tryScene);
   }, [trainer]);
 
+  useEffect(() => void connection.call<SceneOfSession[]>("session.scenes").then(setScenes, () => {}), [connection, listing]);
+  const expert = chosenExpert ?? (output && phase !== "choose" ? proposedExpert(scenes, sceneKey, output) : "");
   useEffect(() => {
     if (!trainer) return;
     trainer.setExpert(null);
@@ -217,19 +223,19 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
   const choose = () => {
     trainer?.clear();
     setChosenName(tryScene ? null : chosenName && freeName(listing, chosenName));
-    setPhase("choose"), setEnded(null);
+    setPhase("choose"), setEnded(null), setSceneKey("");
   };
   const frame = trainer?.scene?.frame ?? null, view = trainer?.scene?.view ?? null;
   const hands = frame?.second ? [frame, frame.second] : frame ? [frame] : [];
   const force = Math.hypot(...(trainer?.ownFrame?.force ?? [0]));
-  const limit = view?.damage_force_n || kForceLimit;
+  const limit = view?.damage_force_n || kForceLimit, givesWay = trainer?.givesWay ?? null;
   sound.current.sound(force / limit);
 
   return (
     <div class="room train">
       <nav class="list" aria-label="Scenes">
         <h2>Scenes</h2>
-        {listing.scenes.length === 0 && <p class="hint">No scene in this folder yet. Make one with <code>ctpm import</code>.</p>}
+        {listing.scenes.length === 0 && <p class="hint">No scene in this folder yet. Make one in Author, or with <code>ctpm import</code>.</p>}
         <ul>
           {listing.scenes.map((entry) => (
             <li key={entry.path}>
@@ -266,6 +272,9 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
             <div ref={bar} class={force > limit ? "over" : ""} />
             <output>{newtons(force)}</output>
           </div>
+        )}
+        {phase === "running" && givesWay && (
+          <p class="busy" role="status">The hand gives way: a mouse presses {"force_n" in givesWay ? `with ${newtons(givesWay.force_n, 0)} at most` : `${millimetres(givesWay.depth_m, 0)} deep at most`}</p>
         )}
         <Problems error={error} />
       </div>
@@ -310,7 +319,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
               <input value={phase === "loading" ? output : chosenName ?? freeName(listing, kUsualName)} disabled={phase === "loading"} onInput={(e) => setChosenName(e.currentTarget.value)} />
             </label>
             <DeviceForm choice={device} onChoice={setDevice} isDisabled={phase === "loading"} />
-            <ExpertChoice listing={listing.sessions} expert={expert} onExpert={setExpert} use="shown as a ghost" />
+            <ExpertChoice listing={listing.sessions} scenes={scenes} sceneKey={sceneKey} expert={expert} onExpert={setChosenExpert} use="shown as a ghost" />
             {device.how && chosenName !== "" && <ShownCommand text={command("record", scene || "SCENE.json", "-o", chosenName ?? freeName(listing, kUsualName), ...deviceWords(device))} />}
             {phase === "loading" && <button type="button" onClick={() => loading.current?.abort()}>Cancel</button>}
           </Section>
@@ -336,7 +345,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
               ]} />
             </Section>
             <Section title="Expert">
-              <ExpertChoice listing={listing.sessions} expert={expert} onExpert={setExpert} use="shown as a ghost" />
+              <ExpertChoice listing={listing.sessions} scenes={scenes} sceneKey={sceneKey} expert={expert} onExpert={setChosenExpert} use="shown as a ghost" />
               {trainer?.isExpertOfOtherScene && <p class="warning" role="alert">{expert} is of another scene than this one: its ghost is not shown, and it cannot be compared with.</p>}
               {expert && trainer && !trainer.isExpertOfOtherScene && (
                 <label class="field">
@@ -359,7 +368,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
           </>
         )}
         {phase === "ended" && ended && (
-          <Ended connection={connection} listing={listing} ended={ended} expert={expert} onExpert={setExpert} onReview={onReview}
+          <Ended connection={connection} listing={listing} scenes={scenes} sceneKey={sceneKey} ended={ended} expert={expert} onExpert={setChosenExpert} onReview={onReview}
             onAgain={() => void begin(scene, output)} onChoose={choose} onAuthor={tryScene ? onAuthor : null} />
         )}
       </aside>
@@ -367,22 +376,12 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
   );
 }
 
-function ExpertChoice({ listing, expert, onExpert, use }: { listing: Listing["sessions"]; expert: string; onExpert: (path: string) => void; use: string }) {
-  return (
-    <label class="field">
-      <span>the expert's session, {use}</span>
-      <select value={expert} onChange={(e) => onExpert(e.currentTarget.value)}>
-        <option value="">none</option>
-        {listing.map((s) => <option key={s.path} value={s.path}>{s.path}</option>)}
-      </select>
-    </label>
-  );
-}
-
 /** What became of a session: its numbers, its verdict, and how it compares with the expert's. */
-function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain, onChoose, onAuthor }: {
+function Ended({ connection, listing, scenes, sceneKey, ended, expert, onExpert, onReview, onAgain, onChoose, onAuthor }: {
   connection: Connection;
   listing: Listing;
+  scenes: SceneOfSession[];
+  sceneKey: string;
   ended: EndedTraining;
   expert: string;
   onExpert: (path: string) => void;
@@ -430,7 +429,7 @@ function Ended({ connection, listing, ended, expert, onExpert, onReview, onAgain
       {ended.refused && <p class="warning">The simulation was refused; what came before is saved.</p>}
       {path && (
         <Section title="Verify and compare">
-          <ExpertChoice listing={others} expert={expert} onExpert={onExpert} use="to compare with" />
+          <ExpertChoice listing={others} scenes={scenes} sceneKey={sceneKey} expert={expert} onExpert={onExpert} use="to compare with" />
           {otherScene && <p class="warning" role="alert">{otherScene}. They cannot be compared.</p>}
           {progress ? <Working what={verdict ? "comparing" : "verifying"} done={progress[0]} total={progress[1]} onCancel={() => running.current?.abort()} />
             : <button type="button" class="main" onClick={() => void compare()}>{isCompared ? "Verify and compare" : "Verify"}</button>}

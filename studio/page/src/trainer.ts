@@ -17,6 +17,9 @@ const kKeyStep = 0.001; // for a press of a key [m]
 const kTurnStep = Math.PI / 36;
 const kPadSpeed = 0.06, kPadTurn = Math.PI / 2; // of a stick or trigger that is fully pressed [m/s], [rad/s]
 const kHalfGain = 6; // force at which the hand follows the pointer half as far [N]
+const kFirm = 0.5; // share of what the hand bears, from which the pointer leads it no farther than it stretches the hand's spring
+const kSpring = 1000, kSlack = 0.005; // of the program's spring between hand and tool, and how far it may lead beyond [N/m], [m]
+const kGivesWay = 0.9; // share of what it bears, from which it is said to give way
 const kEdge = 0.93; // of the picture that the hand may reach
 const kTakeUp = 30; // from the tool to a pointer that takes it up [px]
 const kSteep = 0.85; // cosine between up and the line of sight, beyond which the viewer looks from above
@@ -53,6 +56,7 @@ export class Trainer {
   isLedByKeys = false; // and not by the pointer since
   private held = false;
   private isLive = false; // its frames come
+  private bears = { force_n: Infinity, depth_m: 0 }; // the hand, before it gives way
   private camera = 0; // of the scene, through which the hand looked last
   private view: SceneView | null = null;
   private readonly hands = [makeHand(), makeHand()];
@@ -128,7 +132,7 @@ export class Trainer {
     this.clear();
     const begun = await this.connection.call<BegunTraining>("train.begin",
       { scene, text, output, device, stage: kTrainStage, most_speed_m_per_s: kGuardSpeed }, { signal });
-    this.isLive = true, this.awaited = begun.awaited, this.isHeld = false, this.hasBegun = begun.awaited !== "", this.sceneKey = begun.scene_key;
+    this.isLive = true, this.awaited = begun.awaited, this.isHeld = false, this.hasBegun = begun.awaited !== "", this.sceneKey = begun.scene_key, this.bears = begun.gives_way;
     // A hand that is not led here leaves the mouse free to look around.
     const { controls } = this.viewer;
     controls.enableZoom = this.awaited !== "";
@@ -254,6 +258,14 @@ export class Trainer {
     }
   }
 
+  /** What the hand bears, if it gives way now. */
+  get givesWay(): { force_n: number } | { depth_m: number } | null {
+    const { force_n, depth_m } = this.bears, frame = this.ownFrame;
+    if (!frame || this.awaited) return null;
+    if (depth_m > 0 && frame.depth >= depth_m) return { depth_m };
+    return Math.hypot(...frame.force) >= kGivesWay * force_n ? { force_n } : null;
+  }
+
   /** The hand follows the pointer less where the tissue resists. */
   private gain(): number {
     const frame = this.ownFrame;
@@ -273,6 +285,15 @@ export class Trainer {
     target.addScaledVector(axes.right, right).addScaledVector(axes.up, up).addScaledVector(axes.deep, deep);
     this.box.clampPoint(target, target);
     this.keepInView();
+    this.keepNearTool();
+  }
+
+  /** Where the tissue resists firmly the hand stays near its tool: what it gives way by need not come back first. */
+  private keepNearTool(): void {
+    const frame = this.ownFrame, force = Math.hypot(...(frame?.force ?? [0])), { force_n, depth_m } = this.bears;
+    if (!frame || (force < kFirm * force_n && (depth_m === 0 || frame.depth < kFirm * depth_m))) return;
+    const { target } = this.own, tool = new three.Vector3(...frame.position);
+    target.sub(tool).clampLength(0, force / kSpring + kSlack).add(tool);
   }
 
   /** Directions of the hand: an upright plane that faces the viewer, so that down presses; from above, the picture's. */

@@ -217,6 +217,29 @@ TEST(VirtualCoupling, ATurnIsFollowedAtABoundedSpeed) {
   EXPECT_NEAR(sources::angle_between(coupling.tool().orientation, turned), 0, 1e-6);
 }
 
+TEST(VirtualCoupling, AToolStaysAboveTheDepthAtWhichTheHandGivesWayWithoutTrembling) {
+  // Tissue that bears no more than 8 N, as what a ball goes right through: only the depth can stop it.
+  constexpr double kBears = 8, kTissueStiffness = 800;
+  for (const double way : {0.04, 0.4}) {
+    devices::CouplingSettings settings;
+    settings.most_force = 15, settings.most_depth = 0.02;
+    devices::VirtualCoupling coupling(settings, kTick);
+    coupling.reset({{0, 0, 0.01}, {}});
+    double depth = 0, deepest = 0, least_at_rest = 1, most_at_rest = 0;
+    for (int tick = 0; tick < 3000; ++tick) {
+      const Vec3 hand{0, 0, 0.01 - std::min(0.3 * tick * kTick, way)};
+      coupling.step({hand, {}}, {0, 0, std::min(kBears, kTissueStiffness * depth)}, depth);
+      depth = std::max(0.0, -coupling.tool().position.z);
+      deepest = std::max(deepest, depth);
+      if (tick > 2500) least_at_rest = std::min(least_at_rest, depth), most_at_rest = std::max(most_at_rest, depth);
+    }
+    EXPECT_GT(least_at_rest, settings.most_depth);
+    EXPECT_LT(most_at_rest, settings.most_depth + 4e-3);
+    EXPECT_LT(most_at_rest - least_at_rest, 1e-4) << "it trembles";
+    EXPECT_LT(deepest, settings.most_depth + 5e-3) << "on its way there";
+  }
+}
+
 TEST(VirtualCoupling, AStandingHandFeelsTheTissueAsItIs) {
   devices::VirtualCoupling coupling({}, kTick);
   coupling.reset({});

@@ -255,7 +255,7 @@ step("it is said whose session is whose, and they can be swapped at the same mom
   assert.deepEqual(await times(), before);
 });
 
-rareStep("a link keeps how the pair is seen: view, colours, cutaway, camera and what brings both together", async () => {
+rareStep("a link keeps how the pair is seen: view, colours, cutaway, camera, the timeline's zoom and what brings both together", async () => {
   const choose = (label, value) => page.locator(`.look-bar label:has-text("${label}") select`).selectOption(value);
   const looks = () => page.locator(".look-bar select").evaluateAll((all) => all.map((select) => select.selectedOptions[0].textContent));
   const drawn = () => page.evaluate(() => [...document.querySelectorAll(".drawings canvas")].map((canvas) => (canvas.hidden ? "" : canvas.toDataURL())));
@@ -275,8 +275,16 @@ rareStep("a link keeps how the pair is seen: view, colours, cutaway, camera and 
   await page.locator(".view > canvas").focus();
   for (let i = 0; i < 3; ++i) await page.keyboard.press("d");
   await page.waitForFunction(() => [...document.querySelectorAll(".drawings canvas")].every((canvas) => !canvas.hidden));
+  // A part of the timeline, in which the moment of the link is not.
+  for (const key of [".", ".", "."]) await page.keyboard.press(key);
+  await page.hover(".plots");
+  await page.keyboard.down("Shift");
+  for (let i = 0; i < 12; ++i) await page.mouse.wheel(0, 100);
+  await page.keyboard.up("Shift");
+  await page.waitForSelector(".playhead[hidden]", { state: "attached" });
+  const zoom = () => page.locator(".zoom output").innerText();
   await studio.quiet(1000);
-  const before = { looks: await looks(), drawn: await drawn(), times: await page.locator(".captions").innerText() };
+  const before = { looks: await looks(), drawn: await drawn(), times: await page.locator(".captions").innerText(), zoom: await zoom() };
   assert.deepEqual(before.looks, ["elements by force", "across y", "as turned"]);
   const link = await copied();
   await picture(page, "review-link-before");
@@ -284,7 +292,11 @@ rareStep("a link keeps how the pair is seen: view, colours, cutaway, camera and 
   assert.deepEqual(await looks(), before.looks);
   await page.waitForFunction((drawn) => [...document.querySelectorAll(".drawings canvas")].every((canvas, i) => !canvas.hidden && canvas.toDataURL() === drawn[i]), before.drawn);
   assert.equal(await page.locator(".captions").innerText(), before.times);
+  assert.equal(await zoom(), before.zoom);
   await picture(page, "review-link-after");
+  await page.locator(".view > canvas").focus();
+  await page.keyboard.press("0");
+  await page.waitForSelector(".zoom output", { state: "detached" });
   await page.click("#tab-compare");
   await page.waitForSelector("#panel button[aria-pressed=true]:text-is('first cut')");
   assert.equal(await ahead(), offsetAt("cut"));

@@ -357,6 +357,9 @@ step("a worst moment leads to the timeline", async () => {
   await picture(page, "train-to-review");
 });
 
+/** What the list of experts has, by group. */
+const groups = () => page.locator("aside .field:has-text('expert') optgroup").evaluateAll((all) => Object.fromEntries(all.map(({ label, children }) => [label, [...children].map(({ value }) => value)])));
+
 step("an expert's session of another scene is said to be one, in a training and after it", async () => {
   await page.click("header nav button:has-text('Train')");
   const choice = page.locator("aside .field:has-text('expert') select"), warning = page.locator("aside .warning:has-text('of another scene')");
@@ -365,6 +368,7 @@ step("an expert's session of another scene is said to be one, in a training and 
   await takeUp(page);
   await warning.waitFor();
   assert.match(await warning.innerText(), /^liver-press-expert\.ctpm is of another scene than this one: its ghost is not shown/);
+  assert.deepEqual(await groups(), { "of this scene": [kExpert, "again.ctpm", "late-2.ctpm", "late-3.ctpm", "late.ctpm", "mine.ctpm", "wheel.ctpm"], "of other scenes": [kOther, "html.ctpm"] });
   assert.equal(await page.locator("aside .readings dt:text-is('away from your tool')").count(), 0);
   await picture(page, "train-other-scene");
   await choice.selectOption(kExpert);
@@ -377,6 +381,50 @@ step("an expert's session of another scene is said to be one, in a training and 
   assert.match(await warning.innerText(), /kidney instead of liver.*They cannot be compared/);
   assert.ok(await page.locator("aside button.main:text-is('Verify')").count(), "what it offers is to verify alone");
   await picture(page, "train-other-scene-ended");
+});
+
+step("the first expert's session of the scene is proposed for what is recorded, and for nothing else", async () => {
+  await page.click("header nav button:has-text('Review')");
+  await page.click("header nav button:has-text('Train')");
+  const chosen = () => page.locator("aside .field:has-text('expert') select").inputValue();
+  assert.deepEqual((await until(groups, (all) => Object.keys(all).length > 1))["of the scene liver"], [kOther]);
+  assert.equal(await chosen(), "");
+  await begin(page, "kidney");
+  assert.equal(await chosen(), "");
+  await end(page);
+  await page.click("button:has-text('Choose a scene')");
+  await begin(page, "kidney", "mine-1.ctpm");
+  assert.equal(await until(chosen, (path) => path !== ""), kExpert);
+  await takeUp(page);
+  await page.waitForSelector("aside .readings dt:text-is('away from your tool')");
+  await picture(page, "train-proposed");
+  await page.locator("aside .field:has-text('expert') select").selectOption("");
+  await end(page);
+  await page.waitForSelector("aside button.main:text-is('Verify')"); // who chose none gets none
+  await page.click("button:has-text('Choose a scene')");
+});
+
+step("a mouse presses no ball through the organ, and the page says where its hand gives way", async () => {
+  await begin(page, "kidney", "deep.ctpm");
+  const middle = await takeUp(page), force = async () => Number.parseFloat(await page.locator(".force-bar output").innerText());
+  const box = await page.locator(".view > canvas").boundingBox(), down = box.y + box.height - 20 - middle.y;
+  await moveMouse(page, middle, { x: 0, y: down }, 120);
+  const said = page.locator(".view .busy:has-text('gives way')");
+  await said.waitFor();
+  assert.match(await said.innerText(), /^The hand gives way: a mouse presses (with 15 N|\d+ mm deep) at most$/);
+  await picture(page, "train-gives-way");
+  assert.deepEqual(await seriousFindings(page), []);
+  const held = await studio.handAtRest(), most = await force();
+  // What it gave way by need not come back first: a little up, and it presses less.
+  await moveMouse(page, { x: middle.x, y: middle.y + down }, { x: 0, y: -120 }, 30);
+  const lifted = minus(await studio.handAtRest(), held)[2], less = await until(force, (now) => now < most - 2);
+  console.log(`training: a mouse pressed with ${most} N; ${(1e3 * lifted).toFixed(1)} mm higher with ${less} N`);
+  assert.ok(less < most - 2, `${most} N, ${less} N`);
+  await end(page);
+  const info = JSON.parse(ctpm(folder, "info", "deep.ctpm", "--json").out);
+  assert.ok(info.max_force_n < 16.5 && info.max_depth_m < 0.03, `${info.max_force_n} N, ${info.max_depth_m} m`);
+  assert.equal(ctpm(folder, "verify", "deep.ctpm").code, 0);
+  await page.click("button:has-text('Choose a scene')");
 });
 
 step("it fits a tablet", async () => {

@@ -87,6 +87,10 @@ TEST(Protocol, NoCallReachesAFileOutsideOfTheFolder) {
       {"scene.read", "path", ".json", none},
       {"scene.check", "path", ".json", {{"text", "{}"}}},
       {"scene.write", "path", ".json", {{"text", "{}"}, {"revision", "none"}}},
+      {"scene.rename", "path", ".json", {{"to", "new.json"}}},
+      {"scene.rename", "to", ".json", {{"path", "own.json"}}},
+      {"scene.removal", "path", ".json", none},
+      {"scene.remove", "path", ".json", {{"files", {"own.json"}}}},
       {"train.begin", "scene", ".json", {{"stage", 2}}},
       {"train.begin", "output", ".ctpm", {{"scene", "own.json"}, {"stage", 2}}}};
   const std::string before = outer.list();

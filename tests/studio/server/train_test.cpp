@@ -57,6 +57,46 @@ TEST_F(TrainingTest, WhatTheHandDidIsRecordedAndReplaysToTheBit) {
             std::string::npos);
 }
 
+TEST_F(TrainingTest, APageLeadsNoBallThroughAnOrgan) {
+  for (const char* name : {"liver.json", "organs/liver.obj"})
+    fs::copy(fs::path(CTPM_SOURCE_DIR) / "scenes" / name, folder_.path() / name);
+  struct Case {
+    const char* scene;
+    double x, y, top, force_n, least_m, most_m;  // of the surface below the hand; where it gives way
+  };
+  for (const Case& one : {Case{"kidney.json", -0.015, 0, 0.056, 15, 0.018, 0.025},
+                          Case{"liver.json", -0.045, 0.03, 0.106, 15, 0.024, 0.024}}) {
+    const Serving serving(folder_.path());
+    SocketClient client(serving);
+    const std::string file = std::string(one.scene) + ".ctpm";
+    const nlohmann::json begun = client.call("train.begin", {{"scene", one.scene}, {"output", file}, {"stage", 2}});
+    ASSERT_TRUE(begun.contains("result")) << begun;
+    EXPECT_EQ(begun["result"]["gives_way"]["force_n"], one.force_n);
+    const double depth_m = begun["result"]["gives_way"]["depth_m"];
+    EXPECT_GE(depth_m, one.least_m);  // the kidney is 45 mm thick, the liver is damaged 12 mm deep
+    EXPECT_LE(depth_m, one.most_m);
+    // It stands until ticks have begun; then 0.3 m/s down, right through, and it stands again.
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < 250; ++i) {
+      std::this_thread::sleep_until(begin + std::chrono::milliseconds(8 * i));
+      const double z = one.top + 0.01 - std::min(0.3 * 0.008 * std::max(0, i - 100), one.top);
+      client.send({{"hand",
+                    {{"position", {one.x, one.y, z}},
+                     {"orientation", {1, 0, 0, 0}},
+                     {"buttons", 1},
+                     {"time_s", 100 + 0.008 * i}}}});
+    }
+    client.send({{"id", 99}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
+    const nlohmann::json ended = event_of(client, "train_ended");
+    ASSERT_TRUE(ended["errors"].empty()) << ended;
+    const double force = ended["max_force_n"], depth = ended["max_depth_m"];
+    EXPECT_GT(force, 0.4 * one.force_n) << ended;
+    EXPECT_LT(force, 1.1 * one.force_n) << ended;
+    EXPECT_LT(depth, depth_m + 5e-3) << ended;
+    EXPECT_EQ(testing::run_ctpm({"verify", file}, folder_.path()).code, 0);
+  }
+}
+
 TEST_F(TrainingTest, TheEndSaysHowLongATickOfTheSceneIs) {
   nlohmann::json scene = nlohmann::json::parse(std::ifstream(folder_.path() / "kidney.json"));
   scene["tick_s"] = 0.002;

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "studio/server/desk.h"
+
+namespace ctpm::server {
+
+/// The desks of all pages that are connected. Any thread may ask.
+class Desks {
+ public:
+  void add(const std::shared_ptr<Desk>& desk);
+
+  /// Why the file of a scene must stay where it is: a session of it runs, or another page than that of `own` shows it.
+  /// Empty: nothing keeps it.
+  std::string use_of(const std::string& file, const Desk* own);
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::weak_ptr<Desk>> desks_;
+};
+
+}  // namespace ctpm::server
