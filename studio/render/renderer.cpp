@@ -251,6 +251,8 @@ void Renderer::Parts::set_light(const Program& program, const State& state, cons
 void Renderer::Parts::draw_spheres(const State& state, const DrawOptions& options) {
   const Gl& g = gl();
   instances.clear();
+  // Whole, the outermost would stand out of the surface and hide it.
+  const double size = options.view == View::both ? 0.5 : 1.0;
   const std::vector<std::uint8_t> at_cut = spheres_at_cuts(*scene.model, state);
   for (const OrganRange& range : scene.model->organs)
     for (std::int32_t i = range.first; i < range.first + range.count; ++i) {
@@ -261,7 +263,7 @@ void Renderer::Parts::draw_spheres(const State& state, const DrawOptions& option
                          : linear(scene.sphere_colours.empty() ? layer_colour(scene.model->layer[n], range.layer_count)
                                                                : scene.sphere_colours[n]);
       if (options.cutaway.leaves_out(p)) continue;
-      for (const double x : {p.x, p.y, p.z, range.sphere_radius, c.x, c.y, c.z}) instances.push_back(float(x));
+      for (const double x : {p.x, p.y, p.z, size * range.sphere_radius, c.x, c.y, c.z}) instances.push_back(float(x));
     }
   spheres.set_stream(g, instances);
   set_light(sphere, state, options);
