@@ -287,6 +287,27 @@ TEST_F(DeviceSession, OneWildFirstPoseOrTimeStampDoesNotKeepTheDeviceOut) {
   EXPECT_LT(accepted_after, 1000);
 }
 
+TEST_F(DeviceSession, AToolIsTakenUpWhereItsHandWasSeenFirstAndFollowsFromThere) {
+  start({});
+  device_->waiting.clear();
+  for (int i = 0; i < 100; ++i) now_ += kTick, tell(kHome);
+  int asked = 0;
+  ASSERT_TRUE(source_->wait_for_first_pose([&] { return ++asked > 100; }));
+  // The session's file is opened meanwhile.
+  const Vec3 way{0, 0, -0.05};
+  for (int i = 1; i <= 250; ++i) {
+    now_ += kTick;
+    tell(kHome + i / 250.0 * way);
+  }
+  Vec3 last = kHome;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 at = tick()->position;
+    EXPECT_LT(norm(at - last), 1.3e-3) << "a spring behind a hand that moves at 1 m/s at most, in tick " << i;
+    last = at;
+  }
+  EXPECT_LT(norm(last - (kHome + way)), 1e-3);
+}
+
 TEST_F(DeviceSession, OneTimeStampADayAheadIsRefusedAndTheNextIsNot) {
   for (int i = 0; i < 300; ++i) {
     devices::DeviceReport stamped = report(kHome);

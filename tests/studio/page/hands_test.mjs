@@ -79,12 +79,14 @@ step("the expert's ghost is ahead, or at the same place of its path", async () =
       return context.getImageData(0, 0, bitmap.width, bitmap.height);
     };
     const [one, other] = [await pixels(a), await pixels(b)];
-    let lowest = -1, count = 0;
+    const columns = Array.from({ length: one.width }, () => []); // the rows of such pixels
     for (let i = 0; i < one.data.length; i += 4) {
       const red = one.data[i] - other.data[i], blue = one.data[i + 2] - other.data[i + 2];
-      if (Math.abs(blue) > 15 && Math.sign(blue) * (blue - red) > 25) ++count, lowest = Math.floor(i / 4 / one.width);
+      if (Math.abs(blue) > 15 && Math.sign(blue) * (blue - red) > 25) columns[(i / 4) % one.width].push(Math.floor(i / 4 / one.width));
     }
-    return { lowest, count };
+    // A ghost is tall: an edge has a few pixels of a column, and lies below it.
+    const tall = columns.filter((rows) => rows.length >= 20);
+    return { lowest: Math.max(-1, ...tall.map((rows) => rows[Math.floor(0.9 * rows.length)])), count: tall.flat().length };
   }, [shown, other].map((bytes) => bytes.toString("base64")));
   /** The next picture in which the ghost is elsewhere, or gone. */
   const drawnAfter = async (before) => {
