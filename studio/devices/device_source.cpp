@@ -44,7 +44,7 @@ bool DeviceSource::wait_for_first_pose(const std::function<bool()>& should_stop,
     }
     if (!take_reports(clock_())) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  // Where the hand is seen first its tool is taken up, wherever it goes until the first tick.
+  // The tool is taken up here, even if the hand goes on before the first tick.
   hand_ = settings_.map.to_scene(guard_.pose());
   return true;
 }

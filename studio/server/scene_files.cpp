@@ -38,7 +38,10 @@ bool is_taken(const fs::path& path) {
 
 /// Never over a file that is there. Returns errno, 0: it was moved.
 int move_file(const fs::path& from, const fs::path& to) {
-  return ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0 ? 0 : errno;
+  int outcome = ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE);
+  // Some file systems, of a network or another machine, know no such move.
+  if (outcome != 0 && errno == EINVAL && !is_taken(to)) outcome = ::rename(from.c_str(), to.c_str());
+  return outcome == 0 ? 0 : errno;
 }
 
 /// Moves all of them, or none.

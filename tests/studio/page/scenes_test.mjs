@@ -175,13 +175,14 @@ step("by keyboard too", async () => {
   assert.deepEqual(await until(listed, (names) => names.includes("skin")), ["kidney", "skin"]);
 });
 
-/** Mean differences of neighbouring pixels, and of the whole, between two looks of the open scene [0 to 255]. */
+/** A picture of the open scene, shown in one of the ways that its buttons name. */
 async function shownAs(how) {
   await button(how, ".view-bar").click();
   await page.waitForTimeout(1200); // the fine picture
   const { x, y, width, height } = await page.locator(".view > canvas").boundingBox();
   return page.screenshot({ clip: { x, y: y + 44, width, height: height - 44 } });
 }
+/** In how many pixels two pictures differ. */
 const apart = (a, b) => page.evaluate(async ([one, other]) => {
   const pixels = async (text) => {
     const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]));
