@@ -188,7 +188,7 @@ struct StrokesResult {
   };
   std::vector<Row> rows;
 };
-/// `shipped`: folder of the shipped scenes. `is_quick`: only the straight stroke, at their own filling; else all, also
+/// `shipped`: folder of the shipped scenes. `is_quick`: only the straight stroke, through the kidney; else all, also
 /// at half its radius.
 Result<StrokesResult> measure_strokes(const std::string& shipped, bool is_quick);
 Chapter chapter_of(const StrokesResult& result);

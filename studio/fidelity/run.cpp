@@ -99,7 +99,7 @@ std::vector<Recipe> recipes() {
       {{"free-motion", "Free spin and free fall", false},
        [](const FidelityOptions&) { return told(measure_free_motion(4e-3)); }},
       {{"meeting", "Bodies that meet", false},
-       [](const FidelityOptions& o) { return told(measure_meeting(o.is_quick ? 6e-3 : 4e-3)); }},
+       [](const FidelityOptions& o) { return told(measure_meeting(o.is_quick ? 8e-3 : 4e-3)); }},
       {{"liver", "The shipped liver, turned under its own tool", false},
        [](const FidelityOptions& o) {
          return turned_scene(o, o.shipped + "/liver.json", true, "liver",

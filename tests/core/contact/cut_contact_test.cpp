@@ -199,7 +199,7 @@ TEST(CutContact, ACapRestsOnTheGroundWithItsCutFace) {
   };
   cut_along(model, flat, state);
   ASSERT_EQ(DrawnCut(model, state).pieces, 2);
-  const Dropped dropped = drop(model, state, ground, 4000);
+  const Dropped dropped = drop(model, state, ground, 2500);
   std::printf("fastest %.3f mm/s, drawn %.3f mm inside the ground\n", 1e3 * dropped.fastest, 1e3 * dropped.inside);
   EXPECT_LT(dropped.fastest, 2e-3);
   EXPECT_LT(dropped.inside, 0.5e-3);
