@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "importers/formats.h"
+#include "scenes/text_strings.h"
 #include "studio/output/files.h"
-#include "studio/server/json_strings.h"
 #include "studio/server/scene_list.h"
 
 namespace ctpm::server {
@@ -76,12 +76,12 @@ bool is_mesh_name(const std::string& value) {
 struct NamingFile {
   fs::path file;
   std::string path, text;
-  std::vector<JsonString> strings;
+  std::vector<scenes::TextString> strings;
   bool is_scene = false;
 
   /// Courses and sweeps say by its path which scene they are of.
   bool names_scenes() const {
-    return std::any_of(strings.begin(), strings.end(), [](const JsonString& string) {
+    return std::any_of(strings.begin(), strings.end(), [](const scenes::TextString& string) {
       return string.value == "ctpm-course" || string.value == "ctpm-sweep";
     });
   }
@@ -93,16 +93,16 @@ Result<std::vector<NamingFile>> naming_files(const Folder& folder) {
   const std::vector<FolderEntry> all = folder.list(".json");
   if (all.size() >= Folder::kMostListed)
     return Error{"", "the folder has too many files to tell what names a scene", ""};
-  std::set<std::string> scenes;
-  for (const FolderEntry& entry : scenes_of(folder)) scenes.insert(entry.path);
+  std::set<std::string> listed;
+  for (const FolderEntry& entry : scenes_of(folder)) listed.insert(entry.path);
   std::vector<NamingFile> files;
   for (const FolderEntry& entry : all) {
     const fs::path file = folder.root() / entry.path;
     if (!is_own_file(file)) continue;
     Result<std::string> text = output::read_text_file(file.string());
     if (!text) return text.errors();
-    std::vector<JsonString> strings = strings_of(*text);
-    files.push_back({file, entry.path, std::move(*text), std::move(strings), scenes.contains(entry.path)});
+    std::vector<scenes::TextString> strings = scenes::strings_of(*text);
+    files.push_back({file, entry.path, std::move(*text), std::move(strings), listed.contains(entry.path)});
   }
   return files;
 }
@@ -110,7 +110,7 @@ Result<std::vector<NamingFile>> naming_files(const Folder& folder) {
 /// The first of the others that uses a mesh; empty: none. A sweep names meshes as its scene does, wherever that lies.
 std::string user_of_mesh(const fs::path& mesh, const std::vector<NamingFile>& others) {
   for (const NamingFile& other : others)
-    for (const JsonString& string : other.strings)
+    for (const scenes::TextString& string : other.strings)
       if (other.is_scene ? named_by(other.file, string.value) == mesh
                          : fs::path(string.value).filename() == mesh.filename())
         return other.path;
@@ -153,10 +153,10 @@ void remove_empty(const fs::path& top) {
 using Names = std::map<fs::path, fs::path>;
 
 /// The strings of a course or a sweep that name one of the files, with the new names.
-std::vector<JsonString> renamed_in(const NamingFile& other, const Names& names) {
-  std::vector<JsonString> changed;
+std::vector<scenes::TextString> renamed_in(const NamingFile& other, const Names& names) {
+  std::vector<scenes::TextString> changed;
   if (!other.names_scenes()) return changed;
-  for (JsonString string : other.strings)
+  for (scenes::TextString string : other.strings)
     if (const auto it = names.find(named_by(other.file, string.value)); it != names.end()) {
       string.value = (fs::path(string.value).parent_path() / it->second.filename()).generic_string();
       changed.push_back(std::move(string));
@@ -167,7 +167,7 @@ std::vector<JsonString> renamed_in(const NamingFile& other, const Names& names) 
 /// Writes the new names into all of them. After an error they have their old texts.
 Result<Done> rewrite_all(const std::vector<NamingFile>& files, const Names& names) {
   for (std::size_t i = 0; i < files.size(); ++i) {
-    const std::string text = with_strings(files[i].text, renamed_in(files[i], names));
+    const std::string text = scenes::with_strings(files[i].text, renamed_in(files[i], names));
     const Result<Done> written = output::write_text_file(files[i].file.string(), text);
     if (written) continue;
     while (i-- > 0) (void)output::write_text_file(files[i].file.string(), files[i].text);
@@ -185,7 +185,7 @@ Result<Removal> plan_removal(const Folder& folder, const std::string& scene) {
   if (!all) return all.errors();
   const fs::path file = *found, script = script_of(file);
   std::vector<NamingFile> others;
-  std::vector<JsonString> own;
+  std::vector<scenes::TextString> own;
   for (NamingFile& one : *all)
     if (one.file == file)
       own = std::move(one.strings);
@@ -194,7 +194,7 @@ Result<Removal> plan_removal(const Folder& folder, const std::string& scene) {
   Removal removal{{scene}, {}};
   if (is_own_file(script)) removal.goes.push_back(folder.relative(script.string()));
   std::set<fs::path> seen;
-  for (const JsonString& string : own) {
+  for (const scenes::TextString& string : own) {
     const fs::path mesh = named_by(file, string.value);
     if (!is_mesh_name(string.value) || !is_taken(mesh) || !seen.insert(mesh).second) continue;
     const std::string why = why_mesh_stays(folder, mesh, others);
