@@ -1,6 +1,6 @@
 // An author who renames scenes, removes them and brings them back, and how they look: scenes_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { cpSync, existsSync, mkdirSync, readFileSync, renameSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, readdirSync, readFileSync, renameSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
@@ -173,6 +173,64 @@ step("by keyboard too", async () => {
   await button("Undo", ".scene-form").focus();
   await page.keyboard.press("Enter");
   assert.deepEqual(await until(listed, (names) => names.includes("skin")), ["kidney", "skin"]);
+});
+
+step("what was removed stands at the end of the list, until it is brought back or deleted for good", async () => {
+  const gone = page.locator("details.removed-scenes"), heading = gone.locator("summary"), one = (name) => gone.locator(`li:has(> span:text-is("${name}"))`);
+  await open("kidney");
+  const before = onDisk(), changed = before.replace('"ball", "kind"', '"bead", "kind"');
+  await write(changed);
+  await settled();
+  await more("kidney").click();
+  await button("Remove…", ".scene-form").click();
+  await button("Remove", ".scene-form").click();
+  await page.waitForSelector(".scene-form:has-text('kidney was removed')");
+  // Nothing is kept in the page itself; beside it stands what was removed above, whose place is taken by now.
+  await page.reload();
+  await page.click("header nav button:has-text('Author')");
+  assert.match(await heading.innerText(), /^Removed scenes\s+2$/);
+  assert.equal(await gone.getAttribute("open"), null);
+  await picture(page, "author-removed-closed");
+  await heading.focus();
+  await page.keyboard.press("Enter");
+  assert.match(await one("kidney").innerText(), /20\d\d.*, \d+ kB/);
+  assert.deepEqual(await outOfReach(page), []);
+  await gone.locator("button[aria-label='Delete kidney for good']").focus();
+  await page.keyboard.press("Enter");
+  const asked = gone.locator("[role=group][aria-label='Delete kidney for good']");
+  await page.waitForFunction(() => document.activeElement.textContent === "Back"); // a key pressed twice deletes nothing
+  const said = await asked.innerText();
+  for (const words of [/Delete kidney for good\? Nothing brings these \d+ kB back/, /kidney\.json\s+\d/, /organs\/kidney\.obj\s+\d/, /What is not saved of it goes too/]) assert.match(said, words);
+  assert.deepEqual(await seriousFindings(page), []);
+  for (const [width, height] of [[1280, 720], [820, 1180]]) {
+    await page.setViewportSize({ width, height });
+    await page.waitForTimeout(300);
+    assert.ok((await overflow(page)) <= 0, `${width}x${height}`);
+    await asked.scrollIntoViewIfNeeded();
+    await picture(page, `author-delete-${width}x${height}`);
+  }
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await page.keyboard.press("Escape");
+  await page.waitForFunction(() => document.activeElement.textContent === "Delete…");
+  assert.ok(has(".ctpm-removed/1/kidney.json") || has(".ctpm-removed/2/kidney.json"));
+  // Back comes what was not saved, too.
+  await gone.locator("button[aria-label='Bring back kidney']").click();
+  assert.ok((await until(listed, (names) => names.includes("kidney"))).includes("kidney"));
+  await until(() => heading.innerText(), (text) => /1$/.test(text));
+  assert.ok(onDisk() === before && has("organs/kidney.obj"));
+  assert.equal(await text(), changed);
+  await gone.locator("button[aria-label='Bring back skin-2']").click();
+  await gone.locator(".problems:has-text('exists already')").waitFor();
+  await gone.locator("button[aria-label='Delete skin-2 for good']").click();
+  await button("Delete", "details.removed-scenes .scene-form").click();
+  await gone.waitFor({ state: "detached" });
+  assert.deepEqual(readdirSync(join(folder, ".ctpm-removed")), []);
+  assert.equal(read("skin-2.json"), "somebody else's");
+  await page.evaluate(() => localStorage.removeItem("ctpm.draft:kidney.json"));
+  await page.reload();
+  await page.click("header nav button:has-text('Author')");
+  await page.waitForSelector(".scenes li");
+  assert.equal(await gone.count(), 0);
 });
 
 /** A picture of the open scene, shown in one of the ways that its buttons name. */
