@@ -39,6 +39,8 @@ Result<std::string> restore_scene_files(Parameters& parameters, const CallContex
 Result<std::string> delete_scene_files(Parameters& parameters, const CallContext& context);
 Result<std::string> check_scene(Parameters& parameters, const CallContext& context);
 Result<std::string> show_scene(Parameters& parameters, const CallContext& context);
+Result<std::string> close_scene(Parameters& parameters, const CallContext& context);
+Result<std::string> hold_scenes(Parameters& parameters, const CallContext& context);
 Result<std::string> import_mesh(Parameters& parameters, const CallContext& context);
 Result<std::string> show_schema(Parameters& parameters, const CallContext& context);
 Result<std::string> measure_scene(Parameters& parameters, const CallContext& context);

@@ -35,6 +35,8 @@ constexpr std::pair<const char*, Call> kCalls[] = {
     {"scene.delete", delete_scene_files},
     {"scene.check", check_scene},
     {"scene.show", show_scene},
+    {"scene.close", close_scene},
+    {"scene.hold", hold_scenes},
     {"scene.import", import_mesh},
     {"scene.presets", list_presets},
     {"scene.schema", show_schema},

@@ -31,6 +31,17 @@ std::shared_ptr<Stage> Desk::stage(std::uint32_t number) {
 void Desk::keep(std::uint32_t number, std::shared_ptr<KeptScene> scene) {
   const std::lock_guard lock(mutex_);
   kept_[number].swap(scene);
+  showing_.insert(number);
+}
+
+void Desk::let_go(std::uint32_t number) {
+  const std::lock_guard lock(mutex_);
+  showing_.erase(number);
+}
+
+void Desk::hold(std::set<std::string> files) {
+  const std::lock_guard lock(mutex_);
+  held_ = std::move(files);
 }
 
 std::shared_ptr<KeptScene> Desk::kept(std::uint32_t number) {
@@ -48,8 +59,14 @@ std::shared_ptr<KeptScene> Desk::kept(const std::string& file, const std::string
 
 bool Desk::shows_scene(const std::string& file) {
   const std::lock_guard lock(mutex_);
-  return std::any_of(kept_.begin(), kept_.end(),
-                     [&](const auto& entry) { return entry.second && entry.second->scene().path == file; });
+  return std::any_of(kept_.begin(), kept_.end(), [&](const auto& entry) {
+    return entry.second && showing_.contains(entry.first) && entry.second->scene().path == file;
+  });
+}
+
+bool Desk::holds_scene(const std::string& file) {
+  const std::lock_guard lock(mutex_);
+  return held_.contains(file);
 }
 
 bool Desk::trains_in(const std::string& file) {
@@ -60,6 +77,7 @@ bool Desk::trains_in(const std::string& file) {
 void Desk::forget(const std::string& file) {
   std::vector<std::shared_ptr<KeptScene>> gone;  // end outside of the lock
   const std::lock_guard lock(mutex_);
+  held_.erase(file);
   for (auto& [number, scene] : kept_)
     if (scene && scene->scene().path == file) gone.push_back(std::exchange(scene, nullptr));
 }

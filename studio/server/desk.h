@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "studio/server/kept_scene.h"
@@ -26,14 +27,20 @@ class Desk {
   void close(std::uint32_t number);
 
   /// Keeps the scene that stage `number` shows at rest. kept() returns it, or the one that was loaded from that text as
-  /// that file; null: there is none.
+  /// that file; null: there is none. let_go(): the stage shows it no longer, but it is kept until another one comes, so
+  /// that its author can try it at once.
   void keep(std::uint32_t number, std::shared_ptr<KeptScene> scene);
   std::shared_ptr<KeptScene> kept(std::uint32_t number);
   std::shared_ptr<KeptScene> kept(const std::string& file, const std::string& text);
+  void let_go(std::uint32_t number);
 
-  /// Whether a stage shows the scene of that file at rest, and whether a session of it runs. forget(): no stage does,
-  /// for the file is about to be gone.
+  /// The files of scenes of which the page has changes that are not saved, in place of those before.
+  void hold(std::set<std::string> files);
+
+  /// Whether a stage shows the scene of that file at rest, whether there are changes of it that are not saved, and
+  /// whether a session of it runs. forget(): none of the first two, for the file is about to be gone.
   bool shows_scene(const std::string& file);
+  bool holds_scene(const std::string& file);
   bool trains_in(const std::string& file);
   void forget(const std::string& file);
 
@@ -71,6 +78,8 @@ class Desk {
   std::mutex mutex_;
   std::map<std::uint32_t, std::shared_ptr<Stage>> stages_;
   std::map<std::uint32_t, std::shared_ptr<KeptScene>> kept_;
+  std::set<std::uint32_t> showing_;  ///< stages that show what is kept of them
+  std::set<std::string> held_;
   std::shared_ptr<Training> training_;
 };
 

@@ -94,6 +94,7 @@ export class AuthorScene {
   private poses: OrganPose[] = []; // of the organs that are shown
   private middles: three.Vector3[] = []; // of their spheres, in their meshes
   private onFrame: () => void = () => {};
+  private held = ""; // what hold() told
 
   constructor(private readonly connection: Connection, private readonly viewer: Viewer) {
     connection.call<Schema>("scene.schema").then((schema) => (this.schema = schema), () => {});
@@ -129,8 +130,20 @@ export class AuthorScene {
     }
   }
 
+  /** Others may rename and remove what this page does not show, unless it has changes that are not saved. */
+  private letGo(): void {
+    this.connection.callInTurn(kAuthorStage, "scene.close", {}).catch(() => {});
+  }
+  private hold(): void {
+    const paths = [...documents].filter(([path, doc]) => path === doc.path && doc.isChanged).map(([path]) => path);
+    if (JSON.stringify(paths) === this.held) return;
+    this.held = JSON.stringify(paths);
+    this.connection.call("scene.hold", { paths }).catch(() => {});
+  }
+
   /** Shows no scene. */
   private close(): void {
+    if (lastOpen) this.letGo();
     lastOpen = "";
     this.doc = null, this.shown = null, this.error = null, this.tickTime = null, this.checked = null, this.shownPart = "";
     this.viewer.set(kAuthorStage, null);
@@ -143,6 +156,7 @@ export class AuthorScene {
     const doc = documents.get(to);
     if (!doc) return;
     doc.path = to;
+    this.hold();
     if (this.doc !== doc) return;
     lastOpen = to, this.shownPart = ""; // the program shows it by its new name
     this.changed();
@@ -158,6 +172,7 @@ export class AuthorScene {
       this.close();
     }
     moveDocument(path, `${folder}/${path}`);
+    this.hold();
     this.onChange();
     return wasOpen;
   }
@@ -165,6 +180,7 @@ export class AuthorScene {
   /** It is there again. */
   restored(path: string, folder: string): void {
     moveDocument(`${folder}/${path}`, path);
+    this.hold();
   }
 
   /** It is gone for good. */
@@ -221,6 +237,7 @@ export class AuthorScene {
   private changed(): void {
     const { doc } = this;
     if (!doc) return;
+    this.hold();
     clearTimeout(this.timers.check);
     this.isUnchecked = true;
     this.timers.check = setTimeout(() => void this.check(doc), kCheckAfter);
@@ -277,9 +294,9 @@ export class AuthorScene {
     };
     try {
       const frame = new Promise<void>((resolve) => (this.onFrame = resolve));
-      const shown = await this.connection.call<ShownScene>("scene.show", { path: doc.path, text: doc.text, stage: kAuthorStage }, { signal: stop.signal, progress });
-      await frame;
-      if (this.doc === doc) this.take(shown, part, poses);
+      const shown = await this.connection.callInTurn<ShownScene>(kAuthorStage, "scene.show", { path: doc.path, text: doc.text }, () => !stop.signal.aborted, { signal: stop.signal, progress });
+      if (shown) await frame;
+      if (shown && this.doc === doc) this.take(shown, part, poses);
     } catch (failure) {
       if (!stop.signal.aborted && this.doc === doc) this.error = failure as Error, this.shownPart = part;
     }
@@ -333,6 +350,7 @@ export class AuthorScene {
     clearTimeout(this.timers.show);
     this.running?.abort();
     this.measuring?.abort();
-    for (const doc of documents.values()) doc.commit(), (doc.onChange = () => {});
+    this.letGo();
+    for (const doc of documents.values()) doc.commit(), (doc.onChange = () => this.hold()); // one may be being saved
   }
 }

@@ -149,10 +149,30 @@ step("a place that is taken, and a scene that is open elsewhere, stay as they ar
   await button("Remove…", ".scene-form").click();
   await page.waitForSelector(".scene-form .problems:has-text('open in another page')");
   await picture(page, "author-open-elsewhere");
+  // Who leaves the room gives it free, unless something is not saved; a draft in the browser keeps nothing.
+  const refusedNow = async () => (await button("Remove…", ".scene-form").click(), until(() => form().innerText(), (text) => /Remove skin\?|not saved/.test(text)));
+  await other.click("header nav button:has-text('Review')");
+  await page.waitForTimeout(300);
+  await button("Remove…", ".scene-form").click();
+  await page.waitForSelector(".scene-form:has-text('Remove skin?')");
+  await button("Back", ".scene-form").click();
+  await more("skin").click();
+  await other.click("header nav button:has-text('Author')");
+  await other.waitForSelector(".verdict[aria-busy=false]");
+  await other.locator(".cm-content").click();
+  await other.keyboard.press("Control+End");
+  await other.keyboard.type(" ");
+  await other.waitForSelector(".verdict:has-text('not saved')");
+  await other.click("header nav button:has-text('Review')");
+  await page.waitForTimeout(300);
+  assert.match(await refusedNow(), /changes in another page that are not saved/);
+  await form().locator("input").fill("hide");
   await other.close();
   assert.ok(has("skin.json") && !has("hide.json"));
   await until(async () => (await button("Rename", ".scene-form").click({ timeout: 500 }).catch(() => {}), has("hide.json")), (done) => done);
   assert.ok(has("hide.json"));
+  assert.deepEqual(await page.evaluate(() => [localStorage.getItem("ctpm.draft:skin.json"), localStorage.getItem("ctpm.draft:hide.json") !== null]), [null, true]);
+  await page.evaluate(() => localStorage.removeItem("ctpm.draft:hide.json"));
 });
 
 step("by keyboard too", async () => {

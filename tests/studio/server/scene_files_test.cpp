@@ -171,7 +171,29 @@ TEST_F(SceneFilesTest, ASceneThatSomebodyWorksWithStays) {
   ASSERT_TRUE(other.call("scene.show", {{"path", "kidney.json"}, {"stage", 3}}).contains("result"));
   expect_all_refused(client, "open in another page");
   EXPECT_TRUE(other.call("scene.removal", removal).contains("result")) << "who shows it may remove it";
+  // Who leaves it, or shows another one, gives it free, but holds what is not saved; so does the end of the page.
+  ASSERT_TRUE(other.call("scene.close", {{"stage", 3}}).contains("result"));
+  EXPECT_TRUE(client.call("scene.removal", removal).contains("result"));
+  ASSERT_TRUE(other.call("scene.show", {{"path", "kidney.json"}, {"stage", 3}}).contains("result"));
   ASSERT_TRUE(other.call("scene.show", {{"path", "liver.json"}, {"stage", 3}}).contains("result"));
+  EXPECT_TRUE(client.call("scene.removal", removal).contains("result"));
+  ASSERT_TRUE(other.call("scene.hold", {{"paths", {"kidney.json", "gone.json"}}}).contains("result"));
+  expect_all_refused(client, "changes in another page that are not saved");
+  EXPECT_TRUE(other.call("scene.removal", removal).contains("result")) << "its own";
+  expect_refused(other, "scene.hold", {{"paths", {"../kidney.json"}}}, "lies outside");
+  expect_all_refused(client, "changes in another page that are not saved");
+  ASSERT_TRUE(other.call("scene.hold", {{"paths", json::array()}}).contains("result"));
+  EXPECT_TRUE(client.call("scene.removal", removal).contains("result"));
+  {
+    SocketClient leaving(serving);
+    ASSERT_TRUE(leaving.call("scene.show", {{"path", "kidney.json"}, {"stage", 3}}).contains("result"));
+    ASSERT_TRUE(leaving.call("scene.hold", {{"paths", {"kidney.json"}}}).contains("result"));
+    expect_all_refused(client, "open in another page");
+  }
+  bool is_free = false;
+  for (int i = 0; i < 500 && !is_free; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(20)))
+    is_free = client.call("scene.removal", removal).contains("result");
+  EXPECT_TRUE(is_free);
   ASSERT_TRUE(client.call("train.begin", {{"scene", "kidney.json"}, {"stage", 2}}).contains("result"));
   expect_all_refused(client, "being trained in");
   expect_all_refused(other, "being trained in");
