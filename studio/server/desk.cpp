@@ -6,6 +6,12 @@
 
 namespace ctpm::server {
 
+Desk::~Desk() {
+  // Another page may have uploaded another file of that name since.
+  for (const auto& [file, stamp] : uploads_)
+    if (KnownFiles::stamp_of(file) == stamp) drop_upload_(file);
+}
+
 Result<Done> Desk::open(const std::string& file, std::uint32_t number) {
   close(number);
   Result<std::unique_ptr<Stage>> opened = Stage::open(file, number, outbox_);
@@ -80,6 +86,12 @@ void Desk::forget(const std::string& file) {
   held_.erase(file);
   for (auto& [number, scene] : kept_)
     if (scene && scene->scene().path == file) gone.push_back(std::exchange(scene, nullptr));
+}
+
+void Desk::take_charge(const std::string& upload) {
+  const std::optional<KnownFiles::Stamp> stamp = KnownFiles::stamp_of(upload);
+  const std::lock_guard lock(mutex_);
+  if (stamp) uploads_[upload] = *stamp;
 }
 
 void Desk::show(std::uint32_t number, std::int64_t tick, std::uint32_t request) {

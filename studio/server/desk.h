@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -8,6 +9,7 @@
 #include <string>
 
 #include "studio/server/kept_scene.h"
+#include "studio/server/known_files.h"
 #include "studio/server/outbox.h"
 #include "studio/server/stage.h"
 #include "studio/server/training.h"
@@ -17,7 +19,13 @@ namespace ctpm::server {
 /// What one page has open.
 class Desk {
  public:
-  explicit Desk(std::shared_ptr<Outbox> outbox) : outbox_(std::move(outbox)) {}
+  /// `drop_upload` is called in the end for each upload that the page is in charge of.
+  using DropUpload = std::function<void(const std::string& file)>;
+  Desk(std::shared_ptr<Outbox> outbox, DropUpload drop_upload)
+      : outbox_(std::move(outbox)), drop_upload_(std::move(drop_upload)) {}
+  ~Desk();
+  Desk(const Desk&) = delete;
+  Desk& operator=(const Desk&) = delete;
 
   /// The way to the page.
   Outbox& outbox() { return *outbox_; }
@@ -43,6 +51,9 @@ class Desk {
   bool holds_scene(const std::string& file);
   bool trains_in(const std::string& file);
   void forget(const std::string& file);
+
+  /// The page uses an upload, as it is now: it may try again with it as long as it is there.
+  void take_charge(const std::string& upload);
 
   /// Asks a stage for a moment; nothing happens without such a stage.
   void show(std::uint32_t number, std::int64_t tick, std::uint32_t request);
@@ -75,11 +86,13 @@ class Desk {
   std::shared_ptr<Training> training();
 
   std::shared_ptr<Outbox> outbox_;
+  DropUpload drop_upload_;
   std::mutex mutex_;
   std::map<std::uint32_t, std::shared_ptr<Stage>> stages_;
   std::map<std::uint32_t, std::shared_ptr<KeptScene>> kept_;
   std::set<std::uint32_t> showing_;  ///< stages that show what is kept of them
   std::set<std::string> held_;
+  std::map<std::string, KnownFiles::Stamp> uploads_;
   std::shared_ptr<Training> training_;
 };
 

@@ -50,4 +50,9 @@ std::string user_of_mesh(const fs::path& mesh, const std::vector<NamingFile>& fi
   return "";
 }
 
+void remove_unused_upload(const Folder& folder, KnownFiles& uploads, const std::string& file) {
+  const Result<std::vector<NamingFile>> all = naming_files(folder);
+  if (all && user_of_mesh(file, *all).empty()) uploads.remove(file);
+}
+
 }  // namespace ctpm::server

@@ -6,6 +6,7 @@
 
 #include "scenes/text_strings.h"
 #include "studio/server/folder.h"
+#include "studio/server/known_files.h"
 
 // Which files of the folder name others: scenes their meshes, courses and sweeps their scenes.
 namespace ctpm::server {
@@ -30,5 +31,9 @@ std::filesystem::path named_by(const std::filesystem::path& from, const std::str
 
 /// The first of the files that uses a mesh; empty: none.
 std::string user_of_mesh(const std::filesystem::path& mesh, const std::vector<NamingFile>& files);
+
+/// Removes an upload that no file names: an import made a scene of it, which has its own mesh, or its page is gone.
+/// Where who names it is not known, it stays.
+void remove_unused_upload(const Folder& folder, KnownFiles& uploads, const std::string& file);
 
 }  // namespace ctpm::server
