@@ -4,7 +4,7 @@ import { cpSync, existsSync, readdirSync, readFileSync, renameSync, writeFileSyn
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
-import { ctpm, leave, makeFolder, openStudio, outOfReach, overflow, picture, seriousFindings, step, until } from "./browser.mjs";
+import { ctpm, leave, makeFolder, openStudio, outOfReach, overflow, picture, pixelsOf, seriousFindings, step, until } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kCourse = '{"format": "ctpm-course", "tasks": [{"name": "cut", "scene": "kidney.json"}]} // mine';
 let folder, studio, page;
@@ -261,18 +261,12 @@ async function shownAs(how) {
   return page.screenshot({ clip: { x, y: y + 44, width, height: height - 44 } });
 }
 /** In how many pixels two pictures differ. */
-const apart = (a, b) => page.evaluate(async ([one, other]) => {
-  const pixels = async (text) => {
-    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]));
-    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
-    context.drawImage(bitmap, 0, 0);
-    return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
-  };
-  const [p, q] = [await pixels(one), await pixels(other)];
+function apart(a, b) {
+  const [p, q] = [a, b].map((png) => pixelsOf(png).data);
   let count = 0;
   for (let i = 0; i < p.length; i += 4) count += Math.abs(p[i] - q[i]) + Math.abs(p[i + 1] - q[i + 1]) + Math.abs(p[i + 2] - q[i + 2]) > 30;
   return count;
-}, [a.toString("base64"), b.toString("base64")]);
+}
 
 step("where both are shown, the surface is seen around its spheres, on a dark organ and on a bright one", async () => {
   for (const name of ["kidney", "skin"]) {
@@ -281,7 +275,7 @@ step("where both are shown, the surface is seen around its spheres, on a dark or
     await picture(page, `author-both-${name}`);
     const spheres = await shownAs("spheres");
     // What of the organ's picture is neither as its spheres nor as its surface alone: both are seen there.
-    const ofSurface = await apart(both, spheres), ofSpheres = await apart(both, surface);
+    const ofSurface = apart(both, spheres), ofSpheres = apart(both, surface);
     console.log(`author: ${name} shown as both differs from its spheres in ${ofSurface} pixels, from its surface in ${ofSpheres}`);
     assert.ok(ofSurface > 25000 && ofSpheres > 25000, `${ofSurface}, ${ofSpheres}`);
     await button("surface", ".view-bar").click();
