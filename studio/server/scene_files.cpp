@@ -1,7 +1,5 @@
 #include "studio/server/scene_files.h"
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -21,14 +19,6 @@ namespace {
 
 /// The script that an import wrote beside a scene.
 fs::path script_of(const fs::path& scene) { return fs::path(scene).replace_extension(".script.json"); }
-
-bool is_mesh_name(const std::string& value) {
-  const std::vector<std::string> endings = importers::readable_endings();
-  std::string lower = value;
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return std::any_of(endings.begin(), endings.end(),
-                     [&](const std::string& ending) { return lower.ends_with(ending); });
-}
 
 /// Why a mesh stays when its scene goes; empty: it goes too.
 std::string why_mesh_stays(const Folder& folder, const fs::path& mesh, const std::vector<NamingFile>& others) {
@@ -86,7 +76,7 @@ Result<Removal> plan_removal(const Folder& folder, const std::string& scene) {
   std::set<fs::path> seen;
   for (const scenes::TextString& string : own) {
     const fs::path mesh = named_by(file, string.value);
-    if (!is_mesh_name(string.value) || !is_taken(mesh) || !seen.insert(mesh).second) continue;
+    if (!importers::has_readable_ending(string.value) || !is_taken(mesh) || !seen.insert(mesh).second) continue;
     const std::string why = why_mesh_stays(folder, mesh, others);
     if (why.empty())
       removal.goes.push_back(folder.relative(mesh.string()));
