@@ -9,12 +9,12 @@
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <new>
 #include <string>
 #include <vector>
 
 #include "core/model/vec3.h"
+#include "importers/mesh_file.h"
 #include "importers/topology.h"
 #include "importers/wire.h"
 
@@ -96,17 +96,11 @@ void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4t<double
   for (unsigned i = 0; i < node.mNumChildren; ++i) collect(scene, *node.mChildren[i], world_from_node, part, out);
 }
 
-std::string suffix_of(const std::string& path) {
-  std::string suffix = std::filesystem::path(path).extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return suffix;
-}
-
 /// Length of one unit [m] if the format states it, else 0. glTF is in metres by definition. assimp scales a DAE file to
 /// metres by its <unit>. FBX states centimetres per unit in its header.
 double unit_said_by(const aiScene& scene, const std::string& suffix) {
-  if (suffix == ".gltf" || suffix == ".glb" || suffix == ".dae") return 1.0;
-  if (suffix == ".fbx" && scene.mMetaData != nullptr) {
+  if (suffix == "gltf" || suffix == "glb" || suffix == "dae") return 1.0;
+  if (suffix == "fbx" && scene.mMetaData != nullptr) {
     double centimetres = 0;
     float centimetres_float = 0;
     if (scene.mMetaData->Get("UnitScaleFactor", centimetres)) return 0.01 * centimetres;
@@ -117,7 +111,7 @@ double unit_said_by(const aiScene& scene, const std::string& suffix) {
 
 /// assimp rotates 3DS files from z up to y up. This matrix rotates them back to the file's own coordinates.
 aiMatrix4x4t<double> file_from_scene(const std::string& suffix) {
-  if (suffix != ".3ds") return {};
+  if (suffix != "3ds") return {};
   return {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
 }
 

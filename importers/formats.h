@@ -9,4 +9,7 @@ namespace ctpm::importers {
 /// listed; label maps are listed where this build reads them.
 std::vector<std::string> readable_endings();
 
+/// Whether a file's name ends in one of them, in capitals or not.
+bool has_readable_ending(const std::string& name);
+
 }  // namespace ctpm::importers

@@ -1,7 +1,6 @@
 #include "importers/label_map.h"
 
 #include <algorithm>
-#include <cctype>
 #include <string_view>
 
 #include "importers/child_process.h"
@@ -13,8 +12,7 @@
 namespace ctpm::importers {
 
 std::string suffix_of_map(const std::string& path) {
-  std::string low = path;
-  std::transform(low.begin(), low.end(), low.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  const std::string low = in_lower_case(path);
   for (const std::string_view end : {".nii", ".nii.gz"})
     if (low.ends_with(end)) return "nii";
   return low.ends_with(".nrrd") ? "nrrd" : "";

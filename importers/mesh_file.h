@@ -9,6 +9,9 @@
 
 namespace ctpm::importers {
 
+/// A file's name in lower case: endings mean the same in capitals.
+std::string in_lower_case(std::string name);
+
 /// The name's ending in lower case without the dot; "nii.gz" is "nii".
 std::string suffix_of(const std::string& path);
 

@@ -19,10 +19,14 @@
 
 namespace ctpm::importers {
 
+std::string in_lower_case(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return name;
+}
+
 std::string suffix_of(const std::string& path) {
-  std::string suffix = std::filesystem::path(path).extension().string();
+  std::string suffix = in_lower_case(std::filesystem::path(path).extension().string());
   if (!suffix.empty()) suffix.erase(0, 1);
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   if (suffix == "gz" && is_label_map(path)) return "nii";
   return suffix;
 }
@@ -32,6 +36,13 @@ std::vector<std::string> readable_endings() {
                                       ".fbx", ".3ds", ".3mf", ".vtk", ".vtu",  ".msh"};
   if (reads_label_maps()) endings.insert(endings.end(), {".nii", ".nii.gz", ".nrrd"});
   return endings;
+}
+
+bool has_readable_ending(const std::string& name) {
+  const std::vector<std::string> endings = readable_endings();
+  const std::string lower = in_lower_case(name);
+  return std::any_of(endings.begin(), endings.end(),
+                     [&](const std::string& ending) { return lower.ends_with(ending); });
 }
 
 namespace {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
@@ -66,14 +68,38 @@ Result<Done> add_largest(recordings::SessionReader& session, const session::Tick
   return Done{};
 }
 
+/// The last tick at which a moment's words are shown.
+std::int64_t end_of_words(const Moment& moment, std::int64_t shown) {
+  const auto ticks_of = [&](double seconds) {
+    return std::int64_t(std::llround(double(shown) * seconds / kCaptionSeconds));
+  };
+  if (moment.left == Moment::kNever) return moment.tick + shown;
+  const std::int64_t least = moment.tick + ticks_of(kShortestCaption);
+  return std::min(moment.tick + shown, std::max(moment.left + ticks_of(kCaptionAfterContact), least));
+}
+
+/// The last moment before a tick, whose State is shown; null: there is none.
+const Moment* last_before(const std::vector<Moment>& moments, std::int64_t tick) {
+  const auto next = std::upper_bound(moments.begin(), moments.end(), tick,
+                                     [](std::int64_t now, const Moment& moment) { return now <= moment.tick; });
+  return next == moments.begin() ? nullptr : &*(next - 1);
+}
+
 }  // namespace
 
 Result<std::vector<Moment>> all_moments(recordings::SessionReader& session, const session::TickRange& part) {
   const Result<std::vector<recordings::Event>> events = session.events();
   if (!events) return events.errors();
   std::vector<Moment> all;
-  for (const recordings::Event& event : *events)
-    if (const std::optional<Moment> moment = moment_of(event, session.start().model)) all.push_back(*moment);
+  std::map<std::int32_t, std::vector<std::size_t>> touching;  // moments of each tool until it leaves
+  for (const recordings::Event& event : *events) {
+    if (event.kind == recordings::EventKind::contact_ends)
+      for (const std::size_t i : std::exchange(touching[event.tool], {})) all[i].left = event.tick;
+    const std::optional<Moment> moment = moment_of(event, session.start().model);
+    if (!moment) continue;
+    if (moment->kind == Kind::contact || moment->kind == Kind::cut) touching[event.tool].push_back(all.size());
+    all.push_back(*moment);
+  }
   if (!add_largest(session, {0, session.tick_count()}, all))
     if (const Result<Done> added = add_largest(session, part, all); !added) return added.errors();
   std::stable_sort(all.begin(), all.end(), [](const Moment& a, const Moment& b) { return a.tick < b.tick; });
@@ -129,10 +155,13 @@ Result<std::vector<std::array<double, 2>>> slow_parts(const std::vector<Moment>&
 }
 
 std::string words_at(const std::vector<Moment>& moments, std::int64_t tick, std::int64_t shown) {
-  const auto next = std::upper_bound(moments.begin(), moments.end(), tick,
-                                     [](std::int64_t now, const Moment& moment) { return now <= moment.tick; });
-  if (next == moments.begin() || tick - (next - 1)->tick > shown) return "";
-  return (next - 1)->text;
+  const Moment* last = last_before(moments, tick);
+  return last && tick <= end_of_words(*last, shown) ? last->text : "";
+}
+
+std::string words_between(const std::vector<Moment>& moments, std::int64_t from, std::int64_t tick) {
+  const Moment* last = last_before(moments, tick);
+  return last && last->tick > from ? last->text : "";
 }
 
 std::vector<video::Caption> captions_of(const std::vector<Moment>& moments, const FrameTicks& ticks, std::int64_t shown,
@@ -148,7 +177,7 @@ std::vector<video::Caption> captions_of(const std::vector<Moment>& moments, cons
   };
   std::vector<video::Caption> captions;
   for (std::size_t i = 0; i < moments.size(); ++i) {
-    std::int64_t end = moments[i].tick + shown;
+    std::int64_t end = end_of_words(moments[i], shown);
     if (i + 1 < moments.size()) end = std::min(end, moments[i + 1].tick);
     const std::int64_t from = frame_after(moments[i].tick), to = frame_after(end);
     if (from < to) captions.push_back({double(from) / fps, double(to) / fps, moments[i].text});

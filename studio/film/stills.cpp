@@ -57,8 +57,8 @@ Result<std::vector<std::vector<render::Frame>>> draw_stills(const std::vector<re
       Result<Shot> shot = reel.shoot(std::int64_t(i));
       if (!shot) return shot.errors();
       const std::int64_t tick = requests[s].ticks[i];
-      shot->overlay.caption =
-          caption(tick, requests[s].since.empty() ? "" : words_at(reel.moments, tick, requests[s].since[i] - 1));
+      shot->overlay.caption = caption(
+          tick, requests[s].since.empty() ? "" : words_between(reel.moments, tick - requests[s].since[i], tick));
       stills[s].push_back(draw_shot(reel, *shot, 0));
       if (options.progress) options.progress(++done, total);
     }

@@ -10,6 +10,7 @@
 #include "studio/authoring/import_scene.h"
 #include "studio/output/files.h"
 #include "studio/server/call_table.h"
+#include "studio/server/naming_files.h"
 #include "studio/server/scene_list.h"
 #include "studio/server/scene_text.h"
 
@@ -68,6 +69,9 @@ Result<std::string> check_scene(Parameters& parameters, const CallContext& conte
 
 Result<std::string> import_mesh(Parameters& parameters, const CallContext& context) {
   const std::string mesh = parameters.text("mesh"), scene = parameters.text("scene");
+  const Result<std::string> file = context.folder.find(mesh);
+  const bool is_upload = file && context.uploads && context.uploads->holds(*file);
+  if (is_upload && context.desk) context.desk->take_charge(*file);
   authoring::ImportRequest request;
   request.organ = parameters.text_if("organ").value_or("");
   request.unit_in_metres = parameters.number_if("unit_m", 1e-6, 10);
@@ -76,7 +80,7 @@ Result<std::string> import_mesh(Parameters& parameters, const CallContext& conte
   request.largest_hole = parameters.number_if("largest_hole_m", 0, 10);
   request.names = parameters.texts_if("names");
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
-  const Result<std::string> file = context.folder.find(mesh), place = place_of_scene(context.folder, scene);
+  const Result<std::string> place = place_of_scene(context.folder, scene);
   for (const auto* path : {&file, &place})
     if (!*path) return path->errors();
   std::error_code ignored;
@@ -86,6 +90,7 @@ Result<std::string> import_mesh(Parameters& parameters, const CallContext& conte
   request.should_stop = context.should_stop;
   const Result<authoring::ImportOutcome> outcome = authoring::import_scene(request);
   if (!outcome) return outcome.errors();
+  if (is_upload) remove_unused_upload(context.folder, *context.uploads, *file);
   output::JsonWriter json;
   // Of several organs, the page shows the largest one's figures and all findings, and has the box around all.
   const authoring::ImportedPart& organ = outcome->organs.front();

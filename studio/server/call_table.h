@@ -34,9 +34,13 @@ Result<std::string> write_scene(Parameters& parameters, const CallContext& conte
 Result<std::string> rename_scene_file(Parameters& parameters, const CallContext& context);
 Result<std::string> plan_scene_removal(Parameters& parameters, const CallContext& context);
 Result<std::string> remove_scene_files(Parameters& parameters, const CallContext& context);
+Result<std::string> list_removed_scenes(Parameters& parameters, const CallContext& context);
 Result<std::string> restore_scene_files(Parameters& parameters, const CallContext& context);
+Result<std::string> delete_scene_files(Parameters& parameters, const CallContext& context);
 Result<std::string> check_scene(Parameters& parameters, const CallContext& context);
 Result<std::string> show_scene(Parameters& parameters, const CallContext& context);
+Result<std::string> close_scene(Parameters& parameters, const CallContext& context);
+Result<std::string> hold_scenes(Parameters& parameters, const CallContext& context);
 Result<std::string> import_mesh(Parameters& parameters, const CallContext& context);
 Result<std::string> show_schema(Parameters& parameters, const CallContext& context);
 Result<std::string> measure_scene(Parameters& parameters, const CallContext& context);

@@ -21,6 +21,7 @@ struct CallContext {
   Desk* desk = nullptr;  ///< of the page that calls; null for a call by POST
   std::function<void(std::int64_t done, std::int64_t total)> progress = [](std::int64_t, std::int64_t) {};
   std::function<bool()> should_stop = [] { return false; };
+  KnownFiles* uploads = nullptr;       ///< of which an import may make a scene, if there are any
   KnownFiles* films = nullptr;         ///< an export is added to them, if there are any
   KnownFiles* verified = nullptr;      ///< so is a session that replays as it was recorded; comparisons ask for it
   KeptAnswers* comparisons = nullptr;  ///< known ones are answered from them

@@ -6,6 +6,12 @@
 
 namespace ctpm::server {
 
+Desk::~Desk() {
+  // Another page may have uploaded another file of that name since.
+  for (const auto& [file, stamp] : uploads_)
+    if (KnownFiles::stamp_of(file) == stamp) drop_upload_(file);
+}
+
 Result<Done> Desk::open(const std::string& file, std::uint32_t number) {
   close(number);
   Result<std::unique_ptr<Stage>> opened = Stage::open(file, number, outbox_);
@@ -31,6 +37,17 @@ std::shared_ptr<Stage> Desk::stage(std::uint32_t number) {
 void Desk::keep(std::uint32_t number, std::shared_ptr<KeptScene> scene) {
   const std::lock_guard lock(mutex_);
   kept_[number].swap(scene);
+  showing_.insert(number);
+}
+
+void Desk::let_go(std::uint32_t number) {
+  const std::lock_guard lock(mutex_);
+  showing_.erase(number);
+}
+
+void Desk::hold(std::set<std::string> files) {
+  const std::lock_guard lock(mutex_);
+  held_ = std::move(files);
 }
 
 std::shared_ptr<KeptScene> Desk::kept(std::uint32_t number) {
@@ -48,8 +65,14 @@ std::shared_ptr<KeptScene> Desk::kept(const std::string& file, const std::string
 
 bool Desk::shows_scene(const std::string& file) {
   const std::lock_guard lock(mutex_);
-  return std::any_of(kept_.begin(), kept_.end(),
-                     [&](const auto& entry) { return entry.second && entry.second->scene().path == file; });
+  return std::any_of(kept_.begin(), kept_.end(), [&](const auto& entry) {
+    return entry.second && showing_.contains(entry.first) && entry.second->scene().path == file;
+  });
+}
+
+bool Desk::holds_scene(const std::string& file) {
+  const std::lock_guard lock(mutex_);
+  return held_.contains(file);
 }
 
 bool Desk::trains_in(const std::string& file) {
@@ -60,8 +83,15 @@ bool Desk::trains_in(const std::string& file) {
 void Desk::forget(const std::string& file) {
   std::vector<std::shared_ptr<KeptScene>> gone;  // end outside of the lock
   const std::lock_guard lock(mutex_);
+  held_.erase(file);
   for (auto& [number, scene] : kept_)
     if (scene && scene->scene().path == file) gone.push_back(std::exchange(scene, nullptr));
+}
+
+void Desk::take_charge(const std::string& upload) {
+  const std::optional<KnownFiles::Stamp> stamp = KnownFiles::stamp_of(upload);
+  const std::lock_guard lock(mutex_);
+  if (stamp) uploads_[upload] = *stamp;
 }
 
 void Desk::show(std::uint32_t number, std::int64_t tick, std::uint32_t request) {

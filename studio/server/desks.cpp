@@ -17,7 +17,9 @@ std::string Desks::use_of(const std::string& file, const Desk* own) {
   }
   for (const std::shared_ptr<Desk>& desk : open) {
     if (desk->trains_in(file)) return "is being trained in; end that session first";
-    if (desk.get() != own && desk->shows_scene(file)) return "is open in another page; close that page first";
+    if (desk.get() == own) continue;
+    if (desk->shows_scene(file)) return "is open in another page; leave it there first";
+    if (desk->holds_scene(file)) return "has changes in another page that are not saved; save or undo them there first";
   }
   return "";
 }

@@ -14,8 +14,8 @@ class Desks {
  public:
   void add(const std::shared_ptr<Desk>& desk);
 
-  /// Why the file of a scene must stay where it is: a session of it runs, or another page than that of `own` shows it.
-  /// Empty: nothing keeps it.
+  /// Why the file of a scene must stay where it is: a session of it runs, or another page than that of `own` shows it,
+  /// or has changes of it that are not saved. Empty: nothing keeps it.
   std::string use_of(const std::string& file, const Desk* own);
 
  private:

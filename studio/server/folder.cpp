@@ -13,11 +13,6 @@ Error outside(const std::string& relative) {
   return {relative, "lies outside the folder that the studio was started in", ""};
 }
 
-double unix_seconds(fs::file_time_type time) {
-  const auto system = std::chrono::file_clock::to_sys(time);
-  return std::chrono::duration<double>(system.time_since_epoch()).count();
-}
-
 /// "." is not the beginning of a hidden name, ".x" is.
 bool is_hidden(const fs::path& name) {
   const std::string text = name.string();
@@ -25,6 +20,11 @@ bool is_hidden(const fs::path& name) {
 }
 
 }  // namespace
+
+double unix_seconds(fs::file_time_type time) {
+  const auto system = std::chrono::file_clock::to_sys(time);
+  return std::chrono::duration<double>(system.time_since_epoch()).count();
+}
 
 Result<Folder> Folder::open(const std::string& path) {
   std::error_code failure;

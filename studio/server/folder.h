@@ -16,6 +16,9 @@ struct FolderEntry {
   double modified_s = 0;    ///< [s] since 1970
 };
 
+/// A file's time [s] since 1970.
+double unix_seconds(std::filesystem::file_time_type time);
+
 /// The folder that the studio may read and write. Nothing outside of it can be named, through "..", an absolute path
 /// or a link.
 class Folder {

@@ -172,7 +172,7 @@ void HttpConnection::answer_call(const std::string& body) {
     Parameters parameters = given ? *given : *Parameters::parse("{}");
     CallContext context{self->services_.folder};
     context.should_stop = [&] { return self->services_.ends.load(); };
-    context.films = &self->services_.films;
+    context.uploads = &self->services_.uploads, context.films = &self->services_.films;
     context.verified = &self->services_.verified, context.comparisons = &self->services_.comparisons;
     context.desks = &self->services_.desks, context.scenes = &self->services_.scenes;
     const Result<std::string> result = run_call(name, parameters, context);

@@ -1,10 +1,11 @@
-// Scenes in the folder's list: renamed, removed and brought back.
+// Scenes in the folder's list: renamed, removed, brought back and deleted.
 
 #include <algorithm>
 
 #include "studio/output/json_writer.h"
 #include "studio/server/call_table.h"
 #include "studio/server/desks.h"
+#include "studio/server/removed_scenes.h"
 #include "studio/server/scene_files.h"
 #include "studio/server/scene_list.h"
 
@@ -71,7 +72,7 @@ Result<std::string> remove_scene_files(Parameters& parameters, const CallContext
   if (!removal) return removal.errors();
   if (!std::is_permutation(listed.begin(), listed.end(), removal->goes.begin(), removal->goes.end()))
     return Error{path, "other files than these would go; nothing was removed", "look again what goes: scene.removal"};
-  const Result<std::string> removed = remove_scene(context.folder, *removal);
+  const Result<std::string> removed = remove_files(context.folder, removal->goes);
   if (!removed) return removed.errors();
   if (context.desk) context.desk->forget(*file);
   output::JsonWriter json;
@@ -79,14 +80,46 @@ Result<std::string> remove_scene_files(Parameters& parameters, const CallContext
   return json.member("folder", kRemoved + std::string("/") + *removed).end_object().text();
 }
 
+Result<std::string> list_removed_scenes(Parameters& parameters, const CallContext& context) {
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  const Result<std::vector<RemovedScene>> all = removed_scenes(context.folder);
+  if (!all) return all.errors();
+  output::JsonWriter json;
+  json.begin_list();
+  for (const RemovedScene& one : *all) {
+    json.begin_object().member("removed", std::string_view(one.removed)).member("path", std::string_view(one.path));
+    json.member("removed_s", one.removed_s).key("files").begin_list();
+    for (const RemovedScene::File& file : one.files)
+      json.begin_object()
+          .member("path", std::string_view(file.path))
+          .member("bytes", std::int64_t(file.bytes))
+          .member("used_by", std::string_view(file.used_by))
+          .end_object();
+    json.end_list().end_object();
+  }
+  return json.end_list().text();
+}
+
 Result<std::string> restore_scene_files(Parameters& parameters, const CallContext& context) {
   const std::string removed = parameters.text("removed");
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
-  const Result<std::vector<std::string>> files = restore_scene(context.folder, removed);
+  const Result<std::vector<std::string>> files = restore_removed(context.folder, removed);
   if (!files) return files.errors();
   output::JsonWriter json;
   json.begin_object();
   write_paths(json, "files", *files);
+  return json.end_object().text();
+}
+
+Result<std::string> delete_scene_files(Parameters& parameters, const CallContext& context) {
+  const std::string removed = parameters.text("removed");
+  const std::vector<std::string> listed = parameters.texts_if("files");
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  const Result<Done> deleted = delete_removed(context.folder, removed, listed);
+  if (!deleted) return deleted.errors();
+  output::JsonWriter json;
+  json.begin_object();
+  write_paths(json, "deleted", listed);
   return json.end_object().text();
 }
 

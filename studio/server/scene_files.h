@@ -22,14 +22,6 @@ struct Removal {
 /// Errors: those of find_listed_scene().
 Result<Removal> plan_removal(const Folder& folder, const std::string& scene);
 
-/// Moves the files of the plan into a folder of their own below kRemoved, whose name is returned. Errors: one cannot be
-/// moved; then all are where they were.
-Result<std::string> remove_scene(const Folder& folder, const Removal& removal);
-
-/// Moves what a removal moved back to where it was, and returns the paths. Errors: `removed` is no such folder; a place
-/// is taken; then nothing is moved.
-Result<std::vector<std::string>> restore_scene(const Folder& folder, const std::string& removed);
-
 /// What a scene that was renamed took along.
 struct Renamed {
   std::vector<std::string> moved;      ///< paths as they are now: the scene, its script
@@ -40,7 +32,5 @@ struct Renamed {
 /// Errors: those of find_listed_scene(); `to` is no name of a scene, lies elsewhere or exists; a file cannot be moved
 /// or written; then all are as they were.
 Result<Renamed> rename_scene(const Folder& folder, const std::string& scene, const std::string& to);
-
-inline constexpr const char* kRemoved = ".ctpm-removed";  ///< below the folder; hidden, so that nothing lists it
 
 }  // namespace ctpm::server

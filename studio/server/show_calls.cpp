@@ -1,6 +1,7 @@
 // A scene that is shown while its author works on it, and what can be measured of it.
 
 #include <mutex>
+#include <set>
 #include <string>
 
 #include "core/model/state.h"
@@ -81,6 +82,32 @@ Result<std::string> show_scene(Parameters& parameters, const CallContext& contex
   return "{\"view\": " + view_json(scene.scene.spec, model) + ", \"organs\": " + organs.text() +
          ", \"spheres\": " + std::to_string(model.sphere_count()) +
          ", \"elements\": " + std::to_string(model.element_count()) + ", \"warnings\": " + errors_json(warnings) + "}";
+}
+
+/// A stage shows no scene any more.
+Result<std::string> close_scene(Parameters& parameters, const CallContext& context) {
+  const std::uint32_t stage = stage_of(parameters, context);
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  context.desk->let_go(stage);
+  return std::string("{}");
+}
+
+/// Of which scenes the page has changes that are not saved.
+Result<std::string> hold_scenes(Parameters& parameters, const CallContext& context) {
+  const std::vector<std::string> paths = parameters.texts_if("paths");
+  if (!context.desk) parameters.refuse("paths", "only a page with a WebSocket holds scenes");
+  Errors errors = parameters.errors();
+  std::set<std::string> files;
+  for (const std::string& path : paths) {
+    const Result<std::string> file = context.folder.place(path);  // it may be gone by now
+    if (file)
+      files.insert(*file);
+    else
+      errors.insert(errors.end(), file.errors().begin(), file.errors().end());
+  }
+  if (!errors.empty()) return errors;
+  context.desk->hold(std::move(files));
+  return std::string("{}");
 }
 
 /// The time of a tick of the scene that a stage shows.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "studio/server/calls.h"
+#include "studio/server/naming_files.h"
 #include "studio/server/subprotocol.h"
 #include "studio/server/text.h"
 
@@ -49,7 +50,9 @@ void WebClient::start(const beast::http::request<beast::http::empty_body>& reque
 }
 
 void WebClient::begin() {
-  desk_ = std::make_shared<Desk>(shared_from_this());
+  desk_ = std::make_shared<Desk>(shared_from_this(), [&services = services_](const std::string& file) {
+    remove_unused_upload(services.folder, services.uploads, file);
+  });
   services_.desks.add(desk_);
   is_open_ = true;
   read_next();
@@ -117,7 +120,7 @@ void WebClient::take_call(Parameters& message) {
     Clock::time_point last = Clock::now();
     CallContext context{self->services_.folder, desk.get()};
     context.should_stop = [&] { return *cancelled || self->services_.ends; };
-    context.films = &self->services_.films;
+    context.uploads = &self->services_.uploads, context.films = &self->services_.films;
     context.verified = &self->services_.verified, context.comparisons = &self->services_.comparisons;
     context.desks = &self->services_.desks, context.scenes = &self->services_.scenes;
     context.progress = [&](std::int64_t done, std::int64_t total) {

@@ -3,7 +3,7 @@ import type { JSONPath } from "jsonc-parser";
 import * as three from "three";
 import { takenAlong } from "./belongings";
 import type { Connection } from "./connection";
-import { type Draft, putDraft, SceneDocument, takeDraft } from "./document";
+import { moveDraft, SceneDocument, takeDraft } from "./document";
 import { type Item, itemsOf, listOf, type OrganPose, organPoses } from "./items";
 import type { Json } from "./json_edit";
 import { CallFailed, type Problem, type SceneView, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
@@ -56,17 +56,18 @@ function middleOf(centres: Float32Array): three.Vector3 {
   return box.getCenter(new three.Vector3());
 }
 
-/** What the page has of a scene that was removed, for when it comes back. */
-export interface Gone {
-  path: string;
-  doc: SceneDocument | undefined;
-  draft: Draft | null;
-  wasOpen: boolean;
-}
-
-/** Scenes that were open keep their history while the page is there. */
+/** Scenes that were open keep their history while the page is there; those that were removed in it, too, by where they are. */
 const documents = new Map<string, SceneDocument>();
 let lastOpen = "";
+
+/** A scene's history and its draft go where its file goes. */
+function moveDocument(from: string, to: string): void {
+  moveDraft(from, to);
+  const doc = documents.get(from);
+  documents.delete(from);
+  if (doc) documents.set(to, doc);
+  else documents.delete(to);
+}
 
 export class AuthorScene {
   onChange: () => void = () => {};
@@ -93,6 +94,7 @@ export class AuthorScene {
   private poses: OrganPose[] = []; // of the organs that are shown
   private middles: three.Vector3[] = []; // of their spheres, in their meshes
   private onFrame: () => void = () => {};
+  private held = ""; // what hold() told
 
   constructor(private readonly connection: Connection, private readonly viewer: Viewer) {
     connection.call<Schema>("scene.schema").then((schema) => (this.schema = schema), () => {});
@@ -128,8 +130,20 @@ export class AuthorScene {
     }
   }
 
+  /** Others may rename and remove what this page does not show, unless it has changes that are not saved. */
+  private letGo(): void {
+    this.connection.callInTurn(kAuthorStage, "scene.close", {}).catch(() => {});
+  }
+  private hold(): void {
+    const paths = [...documents].filter(([path, doc]) => path === doc.path && doc.isChanged).map(([path]) => path);
+    if (JSON.stringify(paths) === this.held) return;
+    this.held = JSON.stringify(paths);
+    this.connection.call("scene.hold", { paths }).catch(() => {});
+  }
+
   /** Shows no scene. */
   private close(): void {
+    if (lastOpen) this.letGo();
     lastOpen = "";
     this.doc = null, this.shown = null, this.error = null, this.tickTime = null, this.checked = null, this.shownPart = "";
     this.viewer.set(kAuthorStage, null);
@@ -138,34 +152,41 @@ export class AuthorScene {
 
   /** A scene's file has another name now: its history and its draft go with it. */
   renamed(from: string, to: string): void {
-    putDraft(to, takeDraft(from));
-    const doc = documents.get(from);
+    moveDocument(from, to);
+    const doc = documents.get(to);
     if (!doc) return;
-    documents.delete(from);
-    documents.set(to, doc);
     doc.path = to;
+    this.hold();
     if (this.doc !== doc) return;
     lastOpen = to, this.shownPart = ""; // the program shows it by its new name
     this.changed();
   }
 
-  /** A scene's file is gone. Its history and its draft are kept by the caller, for restored(). */
-  removed(path: string): Gone {
-    const gone = { path, doc: documents.get(path), draft: takeDraft(path), wasOpen: this.doc?.path === path };
-    documents.delete(path);
-    if (!gone.wasOpen) return gone;
-    for (const timer of Object.values(this.timers)) clearTimeout(timer);
-    this.running?.abort();
-    this.measuring?.abort();
-    this.close();
+  /** A scene's file is below `folder` now. Its history and its draft go with it, for restored(). Whether it was open. */
+  removed(path: string, folder: string): boolean {
+    const wasOpen = this.doc?.path === path;
+    if (wasOpen) {
+      for (const timer of Object.values(this.timers)) clearTimeout(timer);
+      this.running?.abort();
+      this.measuring?.abort();
+      this.close();
+    }
+    moveDocument(path, `${folder}/${path}`);
+    this.hold();
     this.onChange();
-    return gone;
+    return wasOpen;
   }
 
   /** It is there again. */
-  restored({ path, doc, draft }: Gone): void {
-    putDraft(path, draft);
-    if (doc) documents.set(path, doc);
+  restored(path: string, folder: string): void {
+    moveDocument(`${folder}/${path}`, path);
+    this.hold();
+  }
+
+  /** It is gone for good. */
+  deleted(path: string, folder: string): void {
+    takeDraft(`${folder}/${path}`);
+    documents.delete(`${folder}/${path}`);
   }
 
   get items(): Item[] {
@@ -216,6 +237,7 @@ export class AuthorScene {
   private changed(): void {
     const { doc } = this;
     if (!doc) return;
+    this.hold();
     clearTimeout(this.timers.check);
     this.isUnchecked = true;
     this.timers.check = setTimeout(() => void this.check(doc), kCheckAfter);
@@ -272,9 +294,9 @@ export class AuthorScene {
     };
     try {
       const frame = new Promise<void>((resolve) => (this.onFrame = resolve));
-      const shown = await this.connection.call<ShownScene>("scene.show", { path: doc.path, text: doc.text, stage: kAuthorStage }, { signal: stop.signal, progress });
-      await frame;
-      if (this.doc === doc) this.take(shown, part, poses);
+      const shown = await this.connection.callInTurn<ShownScene>(kAuthorStage, "scene.show", { path: doc.path, text: doc.text }, () => !stop.signal.aborted, { signal: stop.signal, progress });
+      if (shown) await frame;
+      if (shown && this.doc === doc) this.take(shown, part, poses);
     } catch (failure) {
       if (!stop.signal.aborted && this.doc === doc) this.error = failure as Error, this.shownPart = part;
     }
@@ -328,6 +350,7 @@ export class AuthorScene {
     clearTimeout(this.timers.show);
     this.running?.abort();
     this.measuring?.abort();
-    for (const doc of documents.values()) doc.commit(), (doc.onChange = () => {});
+    this.letGo();
+    for (const doc of documents.values()) doc.commit(), (doc.onChange = () => this.hold()); // one may be being saved
   }
 }

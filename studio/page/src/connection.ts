@@ -57,8 +57,8 @@ export class Connection {
 
   /** The same for what opens and closes a stage, one after the other: the program runs calls side by side. `isWanted` is
       asked when it is the call's turn; null: it was not. */
-  callInTurn<T>(stage: number, name: string, params: object, isWanted: () => boolean = () => true): Promise<T | null> {
-    const go = async () => (isWanted() ? this.call<T>(name, { ...params, stage }) : null);
+  callInTurn<T>(stage: number, name: string, params: object, isWanted: () => boolean = () => true, options: CallOptions = {}): Promise<T | null> {
+    const go = async () => (isWanted() ? this.call<T>(name, { ...params, stage }, options) : null);
     const turn = (this.turns.get(stage) ?? Promise.resolve()).then(go, go);
     this.turns.set(stage, turn);
     return turn;

@@ -215,7 +215,7 @@ export class SceneDocument {
 }
 
 /** What is kept of a scene that was not saved. */
-export interface Draft {
+interface Draft {
   text: string;
   drafted: string | null; // the file that it began with
 }
@@ -227,10 +227,16 @@ export function takeDraft(path: string): Draft | null {
   return text === null ? null : { text, drafted };
 }
 
-export function putDraft(path: string, draft: Draft | null): void {
+function putDraft(path: string, draft: Draft | null): void {
   if (!draft) return;
   if (draft.drafted !== null) localStorage.setItem(draftedKey(path), draft.drafted);
   localStorage.setItem(draftKey(path), draft.text);
+}
+
+/** A draft goes where its file goes; one that was left there by another file is none of it. */
+export function moveDraft(from: string, to: string): void {
+  takeDraft(to);
+  putDraft(to, takeDraft(from));
 }
 
 export function hasDraft(path: string): boolean {

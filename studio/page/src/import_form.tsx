@@ -131,23 +131,25 @@ export function ImportForm({ connection, file, leftOut, open, onCancel, onDone }
   const [progress, setProgress] = useState<[string, number] | null>(null);
   const [error, setError] = useState<Error | null>(null);
   const stop = useRef(new AbortController());
-  const uploaded = useRef("");
+  const uploaded = useRef(""); // for as many tries as its author makes
+  const takeBack = async () => {
+    const name = uploaded.current;
+    uploaded.current = "";
+    if (name) await connection.removeUpload(name).catch(() => {}); // somebody has changed it: it is theirs now
+  };
   useEffect(() => {
     connection.call<Preset[]>("scene.presets").then((known) => {
       setPresets(known);
       setOrgan(known.find((preset) => file.name.toLowerCase().includes(preset.organ))?.name ?? kGeneric);
     }, setError);
-    return () => stop.current.abort();
+    return () => {
+      stop.current.abort();
+      void takeBack();
+    };
   }, [connection, file]);
 
   const tissue = presets.find((preset) => preset.name === organ);
   const target = isAdded ? folder + scene : scene, names = isMap ? labels.split(",").map((name) => name.trim()).filter(Boolean) : [], refused = holesOf(error);
-  /** What was uploaded for an import that failed is in nobody's way. */
-  const takeBack = async () => {
-    const name = uploaded.current;
-    uploaded.current = "";
-    await connection.removeUpload(name).catch(() => {}); // somebody has changed it: it is theirs now
-  };
   const start = async (closed = hole) => {
     setError(null), setHole(closed);
     const { signal } = (stop.current = new AbortController());
@@ -163,11 +165,8 @@ export function ImportForm({ connection, file, leftOut, open, onCancel, onDone }
         names: names.length ? names : undefined, largest_hole_m: closed ? Number(closed) / 1e3 : undefined,
       };
       const imported = await connection.call<Imported>("scene.import", params,
-        { progress: (done, total) => setProgress([done < total ? "importing" : "fitting the stiffness", done / total]), signal })
-        .catch(async (failure) => {
-          await takeBack();
-          throw failure;
-        });
+        { progress: (done, total) => setProgress([done < total ? "importing" : "fitting the stiffness", done / total]), signal });
+      uploaded.current = ""; // the program has removed it: the scene has its own mesh
       if (isAdded && open) await addOrgans(connection, open, imported);
       onDone(imported, isAdded);
       return;

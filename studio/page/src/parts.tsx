@@ -89,6 +89,14 @@ export function Section({ title, children, aside }: { title: string; children: C
   );
 }
 
+/** Once what calls it is gone, the focus is where it was before, unless it is elsewhere by then. */
+export function useFocusBack(): void {
+  const before = useRef(document.activeElement as HTMLElement | null);
+  useEffect(() => () => void setTimeout(() => {
+    if (document.activeElement === document.body) before.current?.focus();
+  }), []);
+}
+
 /** What to do where there is nothing yet. */
 export function Empty({ title, children }: { title: string; children: ComponentChildren }) {
   return (

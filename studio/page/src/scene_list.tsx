@@ -1,21 +1,22 @@
 // The scenes of the folder: one is opened, renamed or removed, and what was removed comes back.
 import { useEffect, useRef, useState } from "preact/hooks";
-import type { AuthorScene, Gone } from "./author_scene";
+import type { AuthorScene } from "./author_scene";
 import type { Connection } from "./connection";
 import { hasDraft } from "./document";
 import { parseJson } from "./json_edit";
-import { Problems } from "./parts";
+import { Problems, useFocusBack } from "./parts";
 import type { Listing, Removal, SceneOfSession } from "./protocol";
-import { counted } from "./text";
+import { RemovedScenes } from "./removed_scenes";
+import { counted, sceneName } from "./text";
 
-/** A scene that was removed, and how it is brought back. */
-interface Removed extends Gone {
+/** A scene that was removed in this page, which says so until it is told that this is known. */
+interface Gone {
+  path: string;
   removed: string; // its number
   folder: string; // where its files are
+  wasOpen: boolean;
 }
-let removedHere: Removed[] = []; // while the page is there
-
-const nameOf = (path: string) => path.replace(/\.json$/, "");
+let goneHere: Gone[] = []; // while the page is there
 
 export function SceneList({ connection, listing, scene, onOpen, onChanged }: {
   connection: Connection;
@@ -25,27 +26,29 @@ export function SceneList({ connection, listing, scene, onOpen, onChanged }: {
   onChanged: () => void;
 }) {
   const [chosen, setChosen] = useState(""); // to be renamed or removed; empty: none
-  const [gone, setGone] = useState(removedHere);
+  const [gone, setGone] = useState(goneHere);
   const [error, setError] = useState<Error | null>(null); // of what comes back
   const path = scene?.doc?.path ?? "";
-  useEffect(() => void (removedHere = gone), [gone]);
+  useEffect(() => void (goneHere = gone), [gone]);
 
   const rename = (to: string, rewritten: string[]) => {
     scene?.renamed(chosen, to);
     onChanged();
     if (rewritten.length === 0) setChosen("");
   };
-  const removed = ({ removed, folder }: { removed: string; folder: string }) => {
-    if (scene) setGone([...gone, { ...scene.removed(chosen), removed, folder }]);
+  const removed = (where: { removed: string; folder: string }) => {
+    if (scene) setGone([...gone, { path: chosen, ...where, wasOpen: scene.removed(chosen, where.folder) }]);
     setChosen("");
     onChanged();
   };
-  const bringBack = (one: Removed) => connection.call("scene.restore", { removed: one.removed }).then(() => {
-    scene?.restored(one);
-    setGone((all) => all.filter((other) => other !== one));
+  const known = (number: string) => (setGone((all) => all.filter(({ removed }) => removed !== number)), setError(null));
+  const undo = (one: Gone) => connection.call("scene.restore", { removed: one.removed }).then(() => restored(one.path, one.removed, one.folder), setError);
+  const restored = (back: string, number: string, folder: string) => {
+    scene?.restored(back, folder);
+    known(number);
     onChanged();
-    if (one.wasOpen) onOpen(one.path);
-  }, setError);
+    if (gone.some(({ removed, wasOpen }) => removed === number && wasOpen)) onOpen(back);
+  };
   return (
     <>
       <h2>Scenes</h2>
@@ -53,8 +56,8 @@ export function SceneList({ connection, listing, scene, onOpen, onChanged }: {
       <ul class="scenes">
         {listing.scenes.map((entry) => (
           <li key={entry.path}>
-            <button type="button" aria-current={path === entry.path} title={entry.path} onClick={() => onOpen(entry.path)}><span>{nameOf(entry.path)}</span></button>
-            <button type="button" class="quiet more" aria-expanded={chosen === entry.path} aria-label={`Rename or remove ${nameOf(entry.path)}`} title="Rename or remove"
+            <button type="button" aria-current={path === entry.path} title={entry.path} onClick={() => onOpen(entry.path)}><span>{sceneName(entry.path)}</span></button>
+            <button type="button" class="quiet more" aria-expanded={chosen === entry.path} aria-label={`Rename or remove ${sceneName(entry.path)}`} title="Rename or remove"
               onClick={() => setChosen(chosen === entry.path ? "" : entry.path)}>…</button>
           </li>
         ))}
@@ -62,14 +65,19 @@ export function SceneList({ connection, listing, scene, onOpen, onChanged }: {
       {chosen && <SceneForm key={chosen} connection={connection} path={chosen} isChanged={hasDraft(chosen)} onRenamed={rename} onRemoved={removed} onClose={() => setChosen("")} />}
       {gone.map((one) => (
         <div key={one.removed} class="scene-form" role="status">
-          <p>{nameOf(one.path)} was removed. Its files are in <code>{one.folder}</code>.</p>
+          <p>{sceneName(one.path)} was removed. Its files are in <code>{one.folder}</code>.</p>
           <Problems error={error} />
           <div class="buttons">
-            <button type="button" onClick={() => void bringBack(one)}>Undo</button>
-            <button type="button" class="quiet" onClick={() => (setGone(gone.filter((other) => other !== one)), setError(null))}>Close</button>
+            <button type="button" onClick={() => void undo(one)}>Undo</button>
+            <button type="button" class="quiet" onClick={() => known(one.removed)}>Close</button>
           </div>
         </div>
       ))}
+      <RemovedScenes connection={connection} listing={listing} onRestored={restored} onDeleted={(of, number, folder) => {
+        scene?.deleted(of, folder);
+        known(number);
+        onChanged();
+      }} onOutdated={onChanged} />
     </>
   );
 }
@@ -88,6 +96,7 @@ function SceneForm({ connection, path, isChanged, onRenamed, onRemoved, onClose 
   const [recordings, setRecordings] = useState({ count: 0, of: "" }); // sessions of a scene whose text has that name
   const [rewritten, setRewritten] = useState<string[]>([]);
   const [error, setError] = useState<Error | null>(null);
+  useFocusBack();
   const first = useRef<HTMLInputElement>(null), sure = useRef<HTMLButtonElement>(null);
   useEffect(() => (first.current?.focus(), first.current?.select()), []);
   useEffect(() => sure.current?.focus(), [removal]);
@@ -115,14 +124,14 @@ function SceneForm({ connection, path, isChanged, onRenamed, onRemoved, onClose 
   if (rewritten.length > 0)
     return (
       <div class="scene-form" role="status">
-        <p>{nameOf(path)} is {name} now, and so it is named in {rewritten.join(", ")}.</p>
+        <p>{sceneName(path)} is {name} now, and so it is named in {rewritten.join(", ")}.</p>
         <div class="buttons"><button type="button" class="quiet" onClick={onClose}>Close</button></div>
       </div>
     );
   if (removal)
     return (
-      <div class="scene-form" role="group" aria-label={`Remove ${nameOf(path)}`} onKeyDown={keys}>
-        <p><b>Remove {nameOf(path)}?</b> These files go, and Undo brings them back:</p>
+      <div class="scene-form" role="group" aria-label={`Remove ${sceneName(path)}`} onKeyDown={keys}>
+        <p><b>Remove {sceneName(path)}?</b> These files go, and Undo brings them back:</p>
         <ul class="files">{removal.goes.map((file) => <li key={file}>{file}</li>)}</ul>
         {isChanged && <p class="warning">What is not saved of it goes too.</p>}
         <p>Its recordings stay, and replay without it{recordings.count > 0 && `: ${counted(recordings.count, "session")} of a scene named ${recordings.of}`}.</p>
@@ -135,7 +144,7 @@ function SceneForm({ connection, path, isChanged, onRenamed, onRemoved, onClose 
       </div>
     );
   return (
-    <form class="scene-form" aria-label={`Rename or remove ${nameOf(path)}`} onKeyDown={keys} onSubmit={(e) => {
+    <form class="scene-form" aria-label={`Rename or remove ${sceneName(path)}`} onKeyDown={keys} onSubmit={(e) => {
       e.preventDefault();
       void rename();
     }}>

@@ -35,7 +35,13 @@ export function short(value: number | null | undefined, significant = 4): string
   return value === null || value === undefined ? "–" : String(Number(value.toPrecision(significant)));
 }
 
+/** A scene by its path, without the ending that all of them have. */
+export function sceneName(path: string): string {
+  return path.replace(/\.json$/, "");
+}
+
 export function bytes(count: number): string {
+  if (count < 1e3) return `${count} B`;
   return count < 1e6 ? `${(count / 1e3).toFixed(0)} kB` : `${(count / 1e6).toFixed(1)} MB`;
 }
 

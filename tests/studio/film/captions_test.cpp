@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <tuple>
 
 #include "studio/compare/session_track.h"
 #include "tests/recordings/sessions.h"
@@ -26,6 +27,54 @@ TEST(Captions, WordsAreShownAfterTheirMomentUntilOthersFollow) {
   EXPECT_EQ(film::words_at(moments, 3800, 2000), "two");
   EXPECT_EQ(film::words_at(moments, 3801, 2000), "");
   EXPECT_EQ(film::words_at({}, 5, 2000), "");
+}
+
+TEST(Captions, ThoseOfAContactGoSoonAfterItButCanBeRead) {
+  const std::int64_t shown = 2500;
+  const std::vector<film::Moment> long_one{{1000, "touches", Kind::contact, {}, 2600}};
+  EXPECT_EQ(film::words_at(long_one, 3100, shown), "touches") << "half a second longer than the contact";
+  EXPECT_EQ(film::words_at(long_one, 3101, shown), "");
+  const std::vector<film::Moment> short_one{{1000, "touches", Kind::contact, {}, 1010}};
+  EXPECT_EQ(film::words_at(short_one, 2200, shown), "touches") << "1.2 s, to be read";
+  EXPECT_EQ(film::words_at(short_one, 2201, shown), "");
+  const std::vector<film::Moment> lasting{{1000, "touches", Kind::contact, {}, 9000}, {5000, "cuts", Kind::cut}};
+  EXPECT_EQ(film::words_at(lasting, 3500, shown), "touches");
+  EXPECT_EQ(film::words_at(lasting, 3501, shown), "") << "not longer than before";
+  // At half the speed everything takes half as many ticks.
+  EXPECT_EQ(film::words_at(short_one, 1600, shown / 2), "touches");
+  EXPECT_EQ(film::words_at(short_one, 1601, shown / 2), "");
+  // A page of stills tells what has happened since the one before, whatever is true by then.
+  EXPECT_EQ(film::words_between(short_one, 999, 4000), "touches");
+  EXPECT_EQ(film::words_between(short_one, 1000, 4000), "");
+  EXPECT_EQ(film::words_between(short_one, 0, 1000), "");
+}
+
+TEST(Captions, AMomentKnowsWhenItsToolLeaves) {
+  const testing::Folder folder;
+  const recordings::SessionStart start = testing::small_start();
+  auto writer = recordings::SessionWriter::create(folder / "a.ctpm", start, {});
+  ASSERT_TRUE(writer);
+  using enum recordings::EventKind;
+  for (const auto& [tick, kind, tool] :
+       std::vector<std::tuple<int, recordings::EventKind, int>>{{10, contact_begins, 0},
+                                                                {12, contact_begins, 1},
+                                                                {20, cut, 1},
+                                                                {30, contact_ends, 0},
+                                                                {40, contact_begins, 0},
+                                                                {50, contact_ends, 1}})
+    writer->event({.tick = tick, .kind = kind, .tool = tool});
+  testing::live(start, 60,
+                [&](const State& after, const recordings::TickRecord& record) { writer->append(after, record); });
+  ASSERT_TRUE(writer->finish({}));
+  auto session = recordings::SessionReader::open(folder / "a.ctpm");
+  ASSERT_TRUE(session);
+  const auto moments = film::all_moments(*session, {0, 60});
+  ASSERT_TRUE(moments);
+  std::vector<std::pair<std::int64_t, std::int64_t>> told;
+  for (const film::Moment& m : *moments)
+    if (m.kind == Kind::contact || m.kind == Kind::cut) told.emplace_back(m.tick, m.left);
+  using Told = decltype(told);
+  EXPECT_EQ(told, (Told{{10, 30}, {12, 50}, {20, 50}, {40, film::Moment::kNever}}));
 }
 
 TEST(Captions, APartBeginsWithTheTitleAndTellsOnlyOfWhatHappensInIt) {
@@ -53,8 +102,10 @@ TEST(Captions, OfTwoThatAreNearTheGraverIsToldAndBothOfTheLargest) {
 }
 
 TEST(Captions, TrackAndPictureSayTheSameInEveryFrame) {
-  const std::vector<film::Moment> moments{
-      {0, "title", Kind::title}, {333, "one", Kind::cut}, {1500, "two", Kind::cut}, {9999, "beyond", Kind::cut}};
+  const std::vector<film::Moment> moments{{0, "title", Kind::title},
+                                          {333, "one", Kind::contact, {}, 600},
+                                          {1500, "two", Kind::cut},
+                                          {9999, "beyond", Kind::cut}};
   // Slow in the middle, as where two sessions are matched.
   film::FrameTicks ticks{{0, 2000}, 90, 0, 90, {}, {}};
   ticks.tick = [](std::int64_t frame) {

@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
-import { ctpm, ctpmBeside, isWhole, leave, makeFolder, moveMouse, openStudio, outOfReach, paths, picture, reading, seriousFindings, step, takeUp } from "./browser.mjs";
+import { ctpm, ctpmBeside, isWhole, leave, makeFolder, moveMouse, openStudio, outOfReach, paths, picture, pixelsOf, reading, seriousFindings, step, takeUp } from "./browser.mjs";
 
 let folder, studio, page;
 const kScene = "kidney.json";
@@ -34,23 +34,17 @@ const undoAll = async () => {
 async function hues(colours) {
   const { x, y, width, height } = await page.locator(".view > canvas").boundingBox();
   const bytes = await page.screenshot({ clip: { x, y: y + 50, width, height: height - 50 } });
-  return page.evaluate(async ([encoded, colours]) => {
-    const hueOf = (r, g, b) => {
-      const most = Math.max(r, g, b), spread = most - Math.min(r, g, b);
-      if (spread < 40) return null; // grey
-      return (60 * (most === r ? (g - b) / spread : most === g ? 2 + (b - r) / spread : 4 + (r - g) / spread) + 360) % 360;
-    };
-    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(encoded), (c) => c.charCodeAt(0))]));
-    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
-    context.drawImage(bitmap, 0, 0);
-    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
-    const wanted = colours.map((colour) => hueOf(...colour)), counts = colours.map(() => 0);
-    for (let i = 0; i < data.length; i += 4) {
-      const hue = hueOf(data[i], data[i + 1], data[i + 2]);
-      wanted.forEach((w, k) => hue !== null && Math.abs(((hue - w + 540) % 360) - 180) < 8 && ++counts[k]);
-    }
-    return counts;
-  }, [bytes.toString("base64"), colours]);
+  const hueOf = (r, g, b) => {
+    const most = Math.max(r, g, b), spread = most - Math.min(r, g, b);
+    if (spread < 40) return null; // grey
+    return (60 * (most === r ? (g - b) / spread : most === g ? 2 + (b - r) / spread : 4 + (r - g) / spread) + 360) % 360;
+  };
+  const { data } = pixelsOf(bytes), wanted = colours.map((colour) => hueOf(...colour)), counts = colours.map(() => 0);
+  for (let i = 0; i < data.length; i += 4) {
+    const hue = hueOf(data[i], data[i + 1], data[i + 2]);
+    wanted.forEach((w, k) => hue !== null && Math.abs(((hue - w + 540) % 360) - 180) < 8 && ++counts[k]);
+  }
+  return counts;
 }
 
 step("the slider is dragged with the mouse: one step, its numbers are told, and less is lost of the shape", async () => {

@@ -7,6 +7,7 @@ import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { text } from "node:stream/consumers";
 import { test } from "node:test";
+import { inflateSync } from "node:zlib";
 
 const [program, source, packages, sessions, pictures] = process.argv.slice(2, 7).map((path) => resolve(path));
 export const paths = { program, source, packages, sessions, pictures };
@@ -250,6 +251,34 @@ export async function outOfReach(page) {
 export async function picture(page, name) {
   mkdirSync(pictures, { recursive: true });
   await page.screenshot({ path: join(pictures, `${name}.png`) });
+}
+
+/** The pixels of a PNG, as a browser and the program write them, row by row: red, green, blue and opacity in `data`. */
+export function pixelsOf(png) {
+  const width = png.readUInt32BE(16), height = png.readUInt32BE(20), channels = { 2: 3, 6: 4 }[png[25]];
+  assert.ok(png[24] === 8 && channels && png[28] === 0, "8 bits of red, green, blue and perhaps opacity, not interlaced");
+  const parts = [];
+  for (let at = 8; at < png.length; at += 12 + png.readUInt32BE(at))
+    if (png.toString("latin1", at + 4, at + 8) === "IDAT") parts.push(png.subarray(at + 8, at + 8 + png.readUInt32BE(at)));
+  // Each row begins with how its bytes are foretold by those on the left, above, and above that (PNG, section 9).
+  const packed = inflateSync(Buffer.concat(parts)), stride = width * channels, data = new Uint8ClampedArray(4 * width * height).fill(255);
+  let above = new Uint8Array(stride);
+  for (let y = 0; y < height; ++y) {
+    const how = packed[y * (stride + 1)], row = packed.subarray(y * (stride + 1) + 1, (y + 1) * (stride + 1));
+    for (let i = 0; i < stride; ++i) {
+      const a = i < channels ? 0 : row[i - channels], b = above[i], c = i < channels ? 0 : above[i - channels];
+      if (how === 1) row[i] += a;
+      else if (how === 2) row[i] += b;
+      else if (how === 3) row[i] += (a + b) >> 1;
+      else if (how === 4) {
+        const pa = Math.abs(b - c), pb = Math.abs(a - c), pc = Math.abs(a + b - 2 * c);
+        row[i] += pa <= pb && pa <= pc ? a : pb <= pc ? b : c;
+      }
+    }
+    for (let i = 0, to = 4 * y * width; i < stride; ++i, to += channels === 3 && i % 3 === 0 ? 2 : 1) data[to] = row[i];
+    above = row;
+  }
+  return { width, height, data };
 }
 
 /** What of a comparison is seen in a panel that nobody has scrolled: the first advice, so many worst moments, and whether measures follow. */

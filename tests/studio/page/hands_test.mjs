@@ -4,7 +4,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { openDevice } from "./igtl.mjs";
-import { chooseDevice, ctpm, ctpmBeside, leave, makeFolder, moveMouse, openStudio, outOfReach, picture, reading, seriousFindings, step, takeUp, until } from "./browser.mjs";
+import { chooseDevice, ctpm, ctpmBeside, leave, makeFolder, moveMouse, openStudio, outOfReach, picture, pixelsOf, reading, seriousFindings, step, takeUp, until } from "./browser.mjs";
 import { begin, end, handAxes, takeUpByKeys, untilFelt } from "./trainee_page.mjs";
 import { dot, minus, scaled } from "./vectors.mjs";
 
@@ -71,14 +71,8 @@ step("the expert's ghost is ahead, or at the same place of its path", async () =
   const here = far.indexOf(Math.min(...far)), ahead = here + Math.round(0.25 / interval_s);
   assert.ok(here > first && far[here] < 1e-3 && far[ahead] > 5e-3, `${here}: ${far[here]}, ${ahead}: ${far[ahead]}`);
   // Where two pictures differ by a ghost, which is blue: edges differ, too, where one of them is drawn finer.
-  const between = (shown, other) => page.evaluate(async ([a, b]) => {
-    const pixels = async (bytes) => {
-      const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))]));
-      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
-      context.drawImage(bitmap, 0, 0);
-      return context.getImageData(0, 0, bitmap.width, bitmap.height);
-    };
-    const [one, other] = [await pixels(a), await pixels(b)];
+  const between = (...pictures) => {
+    const [one, other] = pictures.map(pixelsOf);
     const columns = Array.from({ length: one.width }, () => []); // the rows of such pixels
     for (let i = 0; i < one.data.length; i += 4) {
       const red = one.data[i] - other.data[i], blue = one.data[i + 2] - other.data[i + 2];
@@ -87,12 +81,12 @@ step("the expert's ghost is ahead, or at the same place of its path", async () =
     // A ghost is tall: an edge has a few pixels of a column, and lies below it.
     const tall = columns.filter((rows) => rows.length >= 20);
     return { lowest: Math.max(-1, ...tall.map((rows) => rows[Math.floor(0.9 * rows.length)])), count: tall.flat().length };
-  }, [shown, other].map((bytes) => bytes.toString("base64")));
+  };
   /** The next picture in which the ghost is elsewhere, or gone. */
   const drawnAfter = async (before) => {
     const { shown } = await until(async () => {
       const shown = await canvas.screenshot();
-      return { shown, count: (await between(shown, before)).count };
+      return { shown, count: between(shown, before).count };
     }, ({ count }) => count > 200);
     return shown;
   };
@@ -107,7 +101,7 @@ step("the expert's ghost is ahead, or at the same place of its path", async () =
   for (let alike = 0; alike < 2; ) {
     await page.waitForTimeout(200);
     const next = await canvas.screenshot();
-    alike = (await between(rests, next)).count < 20 ? alike + 1 : 0, rests = next;
+    alike = between(rests, next).count < 20 ? alike + 1 : 0, rests = next;
   }
   await choose("where you are on its path", far[here]);
   const same = await drawnAfter(rests);
@@ -117,7 +111,7 @@ step("the expert's ghost is ahead, or at the same place of its path", async () =
   await page.locator("aside .field:has-text('expert') select").selectOption("");
   const none = await drawnAfter(later);
   // What the ghost changes in the picture is where the expert's tool was: lower, by what the way between the poses is in pixels.
-  const [atSame, atLater] = [await between(same, none), await between(later, none)];
+  const [atSame, atLater] = [between(same, none), between(later, none)];
   assert.ok(atSame.count > 200 && atLater.count > 200, `${atSame.count} and ${atLater.count} pixels`);
   assert.ok(atLater.lowest > atSame.lowest + 5, `${atSame.lowest} and ${atLater.lowest}`);
   await end(page);

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
-import { ctpm, ctpmBeside, leave, makeFolder, openStudio, outOfReach, picture, rareStep, seenFirst, seriousFindings, step } from "./browser.mjs";
+import { ctpm, ctpmBeside, leave, makeFolder, openStudio, outOfReach, picture, pixelsOf, rareStep, seenFirst, seriousFindings, step } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm", kOther = "liver-press-expert.ctpm";
 let folder, studio, page, expert, clumsy;
@@ -48,11 +48,8 @@ step("of sessions of two scenes it is said at once that they cannot be compared"
   await studio.quiet(1000);
   await picture(page, "review-other-scene");
   // Both organs are in the picture, although one is larger: none of its edges has tissue.
-  const count = async () => page.evaluate(async (encoded) => {
-    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(encoded), (c) => c.charCodeAt(0))])), { width, height } = bitmap;
-    const context = new OffscreenCanvas(width, height).getContext("2d");
-    context.drawImage(bitmap, 0, 0);
-    const { data } = context.getImageData(0, 0, width, height);
+  const count = async () => {
+    const { width, height, data } = pixelsOf(await page.locator(".view > canvas").screenshot());
     let all = 0, edges = 0;
     for (let i = 0; i < data.length; i += 4) {
       if (data[i] < 60 || data[i] < 1.8 * data[i + 1] || data[i] < 1.8 * data[i + 2]) continue;
@@ -60,7 +57,7 @@ step("of sessions of two scenes it is said at once that they cannot be compared"
       ++all, edges += x < 5 || x > width - 6 || y > height - 6 || middle < 3;
     }
     return [all, edges];
-  }, (await page.locator(".view > canvas").screenshot()).toString("base64"));
+  };
   let [inAll, atEdges] = await count();
   for (const began = Date.now(); atEdges > 0 && Date.now() < began + 20_000; ) [inAll, atEdges] = await count(); // a loaded machine draws late
   assert.ok(inAll > 3000 && atEdges === 0, `${atEdges} of ${inAll} pixels of tissue are at an edge`);

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
-import { ctpm, ctpmBeside, leave, makeFolder, openStudio, overflow, paths, picture, reading, seriousFindings, step, until } from "./browser.mjs";
+import { ctpm, ctpmBeside, leave, makeFolder, openStudio, overflow, paths, picture, pixelsOf, reading, seriousFindings, step, until } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm";
 let folder, studio, page, expert;
@@ -184,15 +184,12 @@ async function filmAndPage(shown, still) {
     "--from-s", "2.599", "--to-s", "2.6", "--overlay", "none", "--size", size.join("x"));
   assert.equal(made.code, 0, made.err);
   const last = readdirSync(join(folder, still)).filter((name) => name.endsWith(".png")).sort().at(-1);
-  const picture = readFileSync(join(folder, still, last)).toString("base64");
-  const apart = () => page.evaluate(async (bytes) => {
-    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))])), canvas = document.querySelector(".drawings canvas");
-    const other = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
-    other.drawImage(bitmap, 0, 0);
-    const a = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data, b = other.getImageData(0, 0, canvas.width, canvas.height).data;
-    const differences = a.map((x, i) => Math.abs(x - b[i]));
+  const film = pixelsOf(readFileSync(join(folder, still, last))).data;
+  const apart = async () => {
+    const drawn = await page.evaluate(() => document.querySelector(".drawings canvas").toDataURL());
+    const differences = pixelsOf(Buffer.from(drawn.split(",")[1], "base64")).data.map((x, i) => Math.abs(x - film[i]));
     return { most: differences.reduce((most, x) => Math.max(most, x), 0), share: differences.filter((x) => x > 24).length / differences.length };
-  }, picture);
+  };
   return { ...(await until(apart, ({ most }) => most === 0, 5)), size }; // the page's newest drawing may still be on its way
 }
 

@@ -1,10 +1,10 @@
 // An author who renames scenes, removes them and brings them back, and how they look: scenes_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { cpSync, existsSync, mkdirSync, readFileSync, renameSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, readdirSync, readFileSync, renameSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
-import { ctpm, leave, makeFolder, openStudio, outOfReach, overflow, picture, seriousFindings, step, until } from "./browser.mjs";
+import { ctpm, leave, makeFolder, openStudio, outOfReach, overflow, picture, pixelsOf, seriousFindings, step, until } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kCourse = '{"format": "ctpm-course", "tasks": [{"name": "cut", "scene": "kidney.json"}]} // mine';
 let folder, studio, page;
@@ -149,10 +149,30 @@ step("a place that is taken, and a scene that is open elsewhere, stay as they ar
   await button("Remove…", ".scene-form").click();
   await page.waitForSelector(".scene-form .problems:has-text('open in another page')");
   await picture(page, "author-open-elsewhere");
+  // Who leaves the room gives it free, unless something is not saved; a draft in the browser keeps nothing.
+  const refusedNow = async () => (await button("Remove…", ".scene-form").click(), until(() => form().innerText(), (text) => /Remove skin\?|not saved/.test(text)));
+  await other.click("header nav button:has-text('Review')");
+  await page.waitForTimeout(300);
+  await button("Remove…", ".scene-form").click();
+  await page.waitForSelector(".scene-form:has-text('Remove skin?')");
+  await button("Back", ".scene-form").click();
+  await more("skin").click();
+  await other.click("header nav button:has-text('Author')");
+  await other.waitForSelector(".verdict[aria-busy=false]");
+  await other.locator(".cm-content").click();
+  await other.keyboard.press("Control+End");
+  await other.keyboard.type(" ");
+  await other.waitForSelector(".verdict:has-text('not saved')");
+  await other.click("header nav button:has-text('Review')");
+  await page.waitForTimeout(300);
+  assert.match(await refusedNow(), /changes in another page that are not saved/);
+  await form().locator("input").fill("hide");
   await other.close();
   assert.ok(has("skin.json") && !has("hide.json"));
   await until(async () => (await button("Rename", ".scene-form").click({ timeout: 500 }).catch(() => {}), has("hide.json")), (done) => done);
   assert.ok(has("hide.json"));
+  assert.deepEqual(await page.evaluate(() => [localStorage.getItem("ctpm.draft:skin.json"), localStorage.getItem("ctpm.draft:hide.json") !== null]), [null, true]);
+  await page.evaluate(() => localStorage.removeItem("ctpm.draft:hide.json"));
 });
 
 step("by keyboard too", async () => {
@@ -175,6 +195,64 @@ step("by keyboard too", async () => {
   assert.deepEqual(await until(listed, (names) => names.includes("skin")), ["kidney", "skin"]);
 });
 
+step("what was removed stands at the end of the list, until it is brought back or deleted for good", async () => {
+  const gone = page.locator("details.removed-scenes"), heading = gone.locator("summary"), one = (name) => gone.locator(`li:has(> span:text-is("${name}"))`);
+  await open("kidney");
+  const before = onDisk(), changed = before.replace('"ball", "kind"', '"bead", "kind"');
+  await write(changed);
+  await settled();
+  await more("kidney").click();
+  await button("Remove…", ".scene-form").click();
+  await button("Remove", ".scene-form").click();
+  await page.waitForSelector(".scene-form:has-text('kidney was removed')");
+  // Nothing is kept in the page itself; beside it stands what was removed above, whose place is taken by now.
+  await page.reload();
+  await page.click("header nav button:has-text('Author')");
+  assert.match(await heading.innerText(), /^Removed scenes\s+2$/);
+  assert.equal(await gone.getAttribute("open"), null);
+  await picture(page, "author-removed-closed");
+  await heading.focus();
+  await page.keyboard.press("Enter");
+  assert.match(await one("kidney").innerText(), /20\d\d.*, \d+ kB/);
+  assert.deepEqual(await outOfReach(page), []);
+  await gone.locator("button[aria-label='Delete kidney for good']").focus();
+  await page.keyboard.press("Enter");
+  const asked = gone.locator("[role=group][aria-label='Delete kidney for good']");
+  await page.waitForFunction(() => document.activeElement.textContent === "Back"); // a key pressed twice deletes nothing
+  const said = await asked.innerText();
+  for (const words of [/Delete kidney for good\? Nothing brings these \d+ kB back/, /kidney\.json\s+\d/, /organs\/kidney\.obj\s+\d/, /What is not saved of it goes too/]) assert.match(said, words);
+  assert.deepEqual(await seriousFindings(page), []);
+  for (const [width, height] of [[1280, 720], [820, 1180]]) {
+    await page.setViewportSize({ width, height });
+    await page.waitForTimeout(300);
+    assert.ok((await overflow(page)) <= 0, `${width}x${height}`);
+    await asked.scrollIntoViewIfNeeded();
+    await picture(page, `author-delete-${width}x${height}`);
+  }
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await page.keyboard.press("Escape");
+  await page.waitForFunction(() => document.activeElement.textContent === "Delete…");
+  assert.ok(has(".ctpm-removed/1/kidney.json") || has(".ctpm-removed/2/kidney.json"));
+  // Back comes what was not saved, too.
+  await gone.locator("button[aria-label='Bring back kidney']").click();
+  assert.ok((await until(listed, (names) => names.includes("kidney"))).includes("kidney"));
+  await until(() => heading.innerText(), (text) => /1$/.test(text));
+  assert.ok(onDisk() === before && has("organs/kidney.obj"));
+  assert.equal(await text(), changed);
+  await gone.locator("button[aria-label='Bring back skin-2']").click();
+  await gone.locator(".problems:has-text('exists already')").waitFor();
+  await gone.locator("button[aria-label='Delete skin-2 for good']").click();
+  await button("Delete", "details.removed-scenes .scene-form").click();
+  await gone.waitFor({ state: "detached" });
+  assert.deepEqual(readdirSync(join(folder, ".ctpm-removed")), []);
+  assert.equal(read("skin-2.json"), "somebody else's");
+  await page.evaluate(() => localStorage.removeItem("ctpm.draft:kidney.json"));
+  await page.reload();
+  await page.click("header nav button:has-text('Author')");
+  await page.waitForSelector(".scenes li");
+  assert.equal(await gone.count(), 0);
+});
+
 /** A picture of the open scene, shown in one of the ways that its buttons name. */
 async function shownAs(how) {
   await button(how, ".view-bar").click();
@@ -183,18 +261,12 @@ async function shownAs(how) {
   return page.screenshot({ clip: { x, y: y + 44, width, height: height - 44 } });
 }
 /** In how many pixels two pictures differ. */
-const apart = (a, b) => page.evaluate(async ([one, other]) => {
-  const pixels = async (text) => {
-    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]));
-    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
-    context.drawImage(bitmap, 0, 0);
-    return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
-  };
-  const [p, q] = [await pixels(one), await pixels(other)];
+function apart(a, b) {
+  const [p, q] = [a, b].map((png) => pixelsOf(png).data);
   let count = 0;
   for (let i = 0; i < p.length; i += 4) count += Math.abs(p[i] - q[i]) + Math.abs(p[i + 1] - q[i + 1]) + Math.abs(p[i + 2] - q[i + 2]) > 30;
   return count;
-}, [a.toString("base64"), b.toString("base64")]);
+}
 
 step("where both are shown, the surface is seen around its spheres, on a dark organ and on a bright one", async () => {
   for (const name of ["kidney", "skin"]) {
@@ -203,7 +275,7 @@ step("where both are shown, the surface is seen around its spheres, on a dark or
     await picture(page, `author-both-${name}`);
     const spheres = await shownAs("spheres");
     // What of the organ's picture is neither as its spheres nor as its surface alone: both are seen there.
-    const ofSurface = await apart(both, spheres), ofSpheres = await apart(both, surface);
+    const ofSurface = apart(both, spheres), ofSpheres = apart(both, surface);
     console.log(`author: ${name} shown as both differs from its spheres in ${ofSurface} pixels, from its surface in ${ofSpheres}`);
     assert.ok(ofSurface > 25000 && ofSpheres > 25000, `${ofSurface}, ${ofSpheres}`);
     await button("surface", ".view-bar").click();

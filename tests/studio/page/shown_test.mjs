@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { networkInterfaces } from "node:os";
 import { after, before } from "node:test";
 import { openDevice } from "./igtl.mjs";
-import { chooseDevice, ctpm, ctpmBeside, makeFolder, openStudio, paths, picture, rareStep, step, takeUp } from "./browser.mjs";
+import { chooseDevice, ctpm, ctpmBeside, makeFolder, openStudio, paths, picture, pixelsOf, rareStep, step, takeUp } from "./browser.mjs";
 import { cross, dot, length, minus, scaled, unit } from "./vectors.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm", kSame = "kidney-same.ctpm";
@@ -35,17 +35,11 @@ step("there is no network, no display, and no program that the studio could call
   assert.deepEqual(Object.keys(networkInterfaces()), ["lo"]);
 });
 
-/** Places in a picture whose colour is as asked: a script of red, green, blue. `endsOfRows`: the first and the last one of each row. */
-function placesOf(bytes, isSuch, endsOfRows = false) {
-  return page.evaluate(async ([encoded, script, endsOfRows]) => {
-    const isSuch = new Function("r", "g", "b", `return ${script}`);
-    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(encoded), (c) => c.charCodeAt(0))]));
-    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
-    context.drawImage(bitmap, 0, 0);
-    const { data, width } = context.getImageData(0, 0, bitmap.width, bitmap.height), places = [];
-    for (let i = 0; i < data.length; i += 4) if (isSuch(data[i], data[i + 1], data[i + 2])) places.push([(i / 4) % width, Math.floor(i / 4 / width)]);
-    return endsOfRows ? places.filter(([, y], i) => places[i - 1]?.[1] !== y || places[i + 1]?.[1] !== y) : places;
-  }, [bytes.toString("base64"), isSuch, endsOfRows]);
+/** Places in a picture whose red, green and blue are as asked. `endsOfRows`: the first and the last one of each row. */
+function placesOf(png, isSuch, endsOfRows = false) {
+  const { data, width } = pixelsOf(png), places = [];
+  for (let i = 0; i < data.length; i += 4) if (isSuch(data[i], data[i + 1], data[i + 2])) places.push([(i / 4) % width, Math.floor(i / 4 / width)]);
+  return endsOfRows ? places.filter(([, y], i) => places[i - 1]?.[1] !== y || places[i + 1]?.[1] !== y) : places;
 }
 
 /** What `replay` writes of each tick. */
@@ -171,15 +165,15 @@ step("the surface that the page draws covers what the exported picture of the sa
   writeFileSync(join(paths.pictures, "shown-surface-page.png"), own);
   writeFileSync(join(paths.pictures, "shown-surface-film.png"), film);
   // What lies between the first and the last tissue of a row: what shines on it, and the arrow, count as tissue.
-  const silhouette = async (bytes) => {
+  const silhouette = (bytes) => {
     const rows = new Map();
-    for (const [x, y] of await placesOf(bytes, "r > 45 && r > 1.5 * g && r > 1.5 * b", true)) {
+    for (const [x, y] of placesOf(bytes, (r, g, b) => r > 45 && r > 1.5 * g && r > 1.5 * b, true)) {
       const [from, to] = rows.get(y) ?? [x, x];
       rows.set(y, [Math.min(from, x), Math.max(to, x)]);
     }
     return rows;
   };
-  const [here, there] = [await silhouette(own), await silhouette(film)];
+  const [here, there] = [silhouette(own), silhouette(film)];
   let either = 0, both = 0;
   for (let y = 0; y < height; ++y) {
     const [from, to] = here.get(y) ?? [0, -1], [first, last] = there.get(y) ?? [0, -1];
@@ -206,7 +200,7 @@ step("the arrow is as long as the force, and points as it does", async () => {
   }
   await page.waitForTimeout(1200); // it holds still
   const canvas = page.locator(".view > canvas"), { width, height } = await canvas.boundingBox();
-  const places = (await placesOf(await canvas.screenshot(), "r > 238 && g > 180 && g < 218 && b > 55 && b < 120"))
+  const places = placesOf(await canvas.screenshot(), (r, g, b) => r > 238 && g > 180 && g < 218 && b > 55 && b < 120)
     .filter(([x]) => x < width - 80);
   const f32 = (at, count) => Array.from({ length: count }, (_, i) => shown.readFloatLE(at + 4 * i));
   const position = f32(44, 3), force = f32(72, 3), newtons = length(force);

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
-import { ctpm, ctpmBeside, leave, makeFolder, moveMouse, openStudio, outOfReach, overflow, paths, picture, reading, seenFirst, seriousFindings, step, takeUp, until } from "./browser.mjs";
+import { ctpm, ctpmBeside, leave, makeFolder, moveMouse, openStudio, outOfReach, overflow, paths, picture, pixelsOf, reading, seenFirst, seriousFindings, step, takeUp, until } from "./browser.mjs";
 import { begin, end, handAxes, takeUpByKeys, untilFelt } from "./trainee_page.mjs";
 import { dot, minus } from "./vectors.mjs";
 
@@ -33,15 +33,10 @@ const kTissue = [[60, 0, 0], [255, 60, 60]], kArrow = [[240, 185, 57], [255, 215
 async function pixels(colour) {
   const { x, y, width, height } = await page.locator(".view canvas").boundingBox();
   const bytes = await page.screenshot({ clip: { x, y, width: width - 80, height } });
-  return page.evaluate(async ([encoded, [least, most]]) => {
-    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(encoded), (c) => c.charCodeAt(0))]));
-    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
-    context.drawImage(bitmap, 0, 0);
-    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
-    let count = 0;
-    for (let i = 0; i < data.length; i += 4) count += [0, 1, 2].every((c) => data[i + c] >= least[c] && data[i + c] <= most[c]);
-    return count;
-  }, [bytes.toString("base64"), colour]);
+  const { data } = pixelsOf(bytes), [least, most] = colour;
+  let count = 0;
+  for (let i = 0; i < data.length; i += 4) count += [0, 1, 2].every((c) => data[i + c] >= least[c] && data[i + c] <= most[c]);
+  return count;
 }
 
 step("an empty room says what to do", async () => {

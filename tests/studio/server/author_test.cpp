@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <fstream>
 #include <set>
+#include <thread>
 
 #include "importers/text.h"
 #include "tests/studio/server/serving.h"
@@ -310,6 +311,76 @@ TEST_F(AuthorTest, AWideHoleIsRefusedByItsNameInTheFolderAndClosedOnRequest) {
   const auto closed = client.call("scene.import", import);
   ASSERT_TRUE(closed.contains("result")) << closed;
   EXPECT_TRUE(fs::exists(folder_.path() / "closed.json"));
+}
+
+class UploadTest : public AuthorTest {
+ protected:
+  void upload(const std::string& name, const std::string& bytes) const {
+    const std::string more = serving_.bearer() + "Content-Length: " + std::to_string(bytes.size()) + "\r\n";
+    const std::string answer =
+        testing::response_to(serving_.port(), serving_.head("PUT /upload/" + name, more) + bytes);
+    ASSERT_EQ(testing::status_of(answer), 201) << answer;
+  }
+  bool is_there(const std::string& name) const { return fs::exists(folder_.path() / name); }
+  /// Waits until it is gone; whether it goes within seconds.
+  bool goes(const std::string& name) const {
+    for (int i = 0; i < 500 && is_there(name); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    return !is_there(name);
+  }
+  static nlohmann::json import_of(const std::string& mesh, const std::string& scene) {
+    return {{"mesh", mesh}, {"scene", scene}, {"radius_m", 0.006}, {"organ", "kidney"}};
+  }
+
+  Serving serving_{folder_.path()};
+};
+
+TEST_F(UploadTest, AnImportThatMadeASceneLeavesNoUploadBesideItsMesh) {
+  const std::string kidney = testing::slurp(folder_.path() / "organs/kidney.obj");
+  SocketClient client(serving_);
+  upload("mine.obj", holed_kidney());
+  nlohmann::json import = import_of("mine.obj", "made.json");
+  EXPECT_TRUE(client.call("scene.import", import).contains("errors"));
+  EXPECT_TRUE(is_there("mine.obj")) << "for another try";
+  import["largest_hole_m"] = 0.1;
+  const auto made = client.call("scene.import", import);
+  ASSERT_TRUE(made.contains("result")) << made;
+  EXPECT_FALSE(is_there("mine.obj"));
+  EXPECT_TRUE(is_there("made.json") && is_there("made.obj"));
+  EXPECT_TRUE(client.call("scene.show", {{"path", "made.json"}, {"stage", kStage}}).contains("result"));
+  // What somebody else uses, has changed or brought stays.
+  upload("used.obj", kidney);
+  text_["organs"][0]["mesh"] = "used.obj";
+  std::ofstream(folder_.path() / "user.json") << text_.dump();
+  EXPECT_TRUE(client.call("scene.import", import_of("used.obj", "made-2.json")).contains("result"));
+  EXPECT_TRUE(is_there("used.obj"));
+  EXPECT_TRUE(client.call("scene.import", import_of("organs/kidney.obj", "made-3.json")).contains("result"));
+  EXPECT_TRUE(is_there("organs/kidney.obj"));
+}
+
+TEST_F(UploadTest, NothingStaysOfATryWhosePageIsGone) {
+  upload("holed.obj", holed_kidney()), upload("changed.obj", holed_kidney()), upload("other.obj", holed_kidney());
+  const nlohmann::json wrong = {{"mesh", "other.obj"}, {"scene", "made.json"}, {"unknown", 1}};
+  {
+    SocketClient client(serving_);
+    for (const char* name : {"holed.obj", "changed.obj"})
+      EXPECT_TRUE(client.call("scene.import", import_of(name, "made.json")).contains("errors"));
+    EXPECT_TRUE(client.call("scene.import", wrong).contains("errors"));
+    EXPECT_TRUE(is_there("holed.obj") && is_there("other.obj"));
+    std::ofstream(folder_.path() / "changed.obj") << "by its author";
+  }
+  EXPECT_TRUE(goes("holed.obj") && goes("other.obj"));
+  EXPECT_TRUE(is_there("changed.obj"));
+  // One whose import the end of its page stops.
+  upload("holed.obj", holed_kidney());
+  {
+    SocketClient client(serving_);
+    nlohmann::json import = import_of("holed.obj", "made.json");
+    import["largest_hole_m"] = 0.1, import["radius_m"] = 0.001;
+    client.send({{"id", 1}, {"call", "scene.import"}, {"params", import}});
+    while (!client.receive().is_text) continue;  // it goes on
+  }
+  EXPECT_TRUE(goes("holed.obj"));
+  EXPECT_FALSE(is_there("made.json"));
 }
 
 TEST_F(AuthorTest, ATextOutsideOfTheFolderIsRefused) {

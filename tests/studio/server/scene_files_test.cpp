@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <fstream>
 
 #include "tests/studio/server/serving.h"
@@ -170,7 +171,29 @@ TEST_F(SceneFilesTest, ASceneThatSomebodyWorksWithStays) {
   ASSERT_TRUE(other.call("scene.show", {{"path", "kidney.json"}, {"stage", 3}}).contains("result"));
   expect_all_refused(client, "open in another page");
   EXPECT_TRUE(other.call("scene.removal", removal).contains("result")) << "who shows it may remove it";
+  // Who leaves it, or shows another one, gives it free, but holds what is not saved; so does the end of the page.
+  ASSERT_TRUE(other.call("scene.close", {{"stage", 3}}).contains("result"));
+  EXPECT_TRUE(client.call("scene.removal", removal).contains("result"));
+  ASSERT_TRUE(other.call("scene.show", {{"path", "kidney.json"}, {"stage", 3}}).contains("result"));
   ASSERT_TRUE(other.call("scene.show", {{"path", "liver.json"}, {"stage", 3}}).contains("result"));
+  EXPECT_TRUE(client.call("scene.removal", removal).contains("result"));
+  ASSERT_TRUE(other.call("scene.hold", {{"paths", {"kidney.json", "gone.json"}}}).contains("result"));
+  expect_all_refused(client, "changes in another page that are not saved");
+  EXPECT_TRUE(other.call("scene.removal", removal).contains("result")) << "its own";
+  expect_refused(other, "scene.hold", {{"paths", {"../kidney.json"}}}, "lies outside");
+  expect_all_refused(client, "changes in another page that are not saved");
+  ASSERT_TRUE(other.call("scene.hold", {{"paths", json::array()}}).contains("result"));
+  EXPECT_TRUE(client.call("scene.removal", removal).contains("result"));
+  {
+    SocketClient leaving(serving);
+    ASSERT_TRUE(leaving.call("scene.show", {{"path", "kidney.json"}, {"stage", 3}}).contains("result"));
+    ASSERT_TRUE(leaving.call("scene.hold", {{"paths", {"kidney.json"}}}).contains("result"));
+    expect_all_refused(client, "open in another page");
+  }
+  bool is_free = false;
+  for (int i = 0; i < 500 && !is_free; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(20)))
+    is_free = client.call("scene.removal", removal).contains("result");
+  EXPECT_TRUE(is_free);
   ASSERT_TRUE(client.call("train.begin", {{"scene", "kidney.json"}, {"stage", 2}}).contains("result"));
   expect_all_refused(client, "being trained in");
   expect_all_refused(other, "being trained in");
@@ -198,6 +221,78 @@ TEST_F(SceneFilesTest, NothingIsBroughtBackOverAFileOrFromElsewhere) {
   const json kidney = removal_of(client, "kidney.json");
   expect_refused(client, "scene.remove", {{"path", "kidney.json"}, {"files", kidney["goes"]}},
                  "cannot be made a folder");
+}
+
+/// A removal of a scene with all that goes with it.
+json remove_all(SocketClient& client, const std::string& path) {
+  const json answer = client.call("scene.remove", {{"path", path}, {"files", removal_of(client, path)["goes"]}});
+  EXPECT_TRUE(answer.contains("result")) << answer;
+  return answer.value("result", json());
+}
+
+TEST_F(SceneFilesTest, WhatWasRemovedIsListedUntilItIsBackOrDeletedForGood) {
+  fs::copy(folder_ / "kidney.json", folder_ / "kidney-2.json");
+  const double before_s = double(std::time(nullptr)) - 2;
+  const Serving serving(folder_);
+  SocketClient client(serving);
+  const json none = json::object();
+  EXPECT_EQ(client.call("scene.removed", none)["result"], json::array());
+  const std::string first = remove_all(client, "kidney.json")["removed"];  // its mesh stays with kidney-2
+  const std::string second = remove_all(client, "kidney-2.json")["removed"];
+  // It is told by the folder alone, as after a new start of the program.
+  const Serving again(folder_);
+  SocketClient other(again);
+  json listed = other.call("scene.removed", none)["result"];
+  ASSERT_EQ(listed.size(), 2u) << listed;
+  if (listed[0]["removed"] == first) std::swap(listed[0], listed[1]);  // in the same moment
+  const auto bytes_of = [&](const std::string& name) { return fs::file_size(folder_ / ".ctpm-removed" / name); };
+  EXPECT_EQ(listed[1]["path"], "kidney.json");
+  EXPECT_EQ(
+      listed[1]["files"],
+      json({{{"path", "kidney.json"}, {"bytes", bytes_of(first + "/kidney.json")}, {"used_by", ""}},
+            {{"path", "kidney.script.json"}, {"bytes", bytes_of(first + "/kidney.script.json")}, {"used_by", ""}}}));
+  EXPECT_EQ(listed[0]["path"], "kidney-2.json");
+  EXPECT_EQ(listed[0]["files"][1], json({{"path", "organs/kidney.obj"},
+                                         {"bytes", bytes_of(second + "/organs/kidney.obj")},
+                                         {"used_by", "kidney.json"}}));
+  for (const json& one : listed) {
+    EXPECT_GT(one["removed_s"].get<double>(), before_s);
+    EXPECT_LT(one["removed_s"].get<double>(), double(std::time(nullptr)) + 2);
+  }
+  // Only what was told goes, and nothing but that.
+  for (const json& files :
+       {json::array(), json::array({"kidney.json"}), json({"kidney.json", "kidney.script.json", "x"})})
+    expect_refused(client, "scene.delete", {{"removed", first}, {"files", files}}, "other files than these");
+  const json deleted =
+      client.call("scene.delete", {{"removed", first}, {"files", {"kidney.script.json", "kidney.json"}}});
+  EXPECT_TRUE(deleted.contains("result")) << deleted;
+  EXPECT_FALSE(fs::exists(folder_ / ".ctpm-removed" / first));
+  EXPECT_TRUE(client.call("scene.restore", {{"removed", second}}).contains("result"));
+  EXPECT_EQ(client.call("scene.removed", none)["result"], json::array());
+  EXPECT_TRUE(fs::exists(folder_ / "kidney-2.json") && fs::exists(folder_ / "organs/kidney.obj"));
+}
+
+TEST_F(SceneFilesTest, NothingElsewhereIsDeletedForGood) {
+  const Serving serving(folder_);
+  SocketClient client(serving);
+  const std::string number = remove_all(client, "liver.json")["removed"];
+  for (const char* wrong : {"", "..", "../..", "0", "1/..", "1/organs", "/", "1x"})
+    expect_refused(client, "scene.delete", {{"removed", wrong}, {"files", json::array()}},
+                   "nothing was removed under that number");
+  // A link among the files is neither told nor followed, and its folder stays with it.
+  std::ofstream(outer_.path() / "outside.json") << "{}";
+  fs::create_symlink(outer_.path() / "outside.json", folder_ / ".ctpm-removed" / number / "link.json");
+  fs::create_directory_symlink(outer_.path(), folder_ / ".ctpm-removed" / number / "out");
+  fs::create_directory_symlink(folder_ / "organs", folder_ / ".ctpm-removed/77");
+  const json listed = client.call("scene.removed", json::object())["result"];
+  ASSERT_EQ(listed.size(), 1u) << listed;
+  EXPECT_EQ(listed[0]["files"].size(), 2u) << listed;
+  const json files = {"liver.json", "organs/liver.obj"};
+  expect_refused(client, "scene.delete", {{"removed", "77"}, {"files", {"kidney.obj"}}}, "nothing was removed");
+  EXPECT_TRUE(client.call("scene.delete", {{"removed", number}, {"files", files}}).contains("result"));
+  EXPECT_TRUE(fs::exists(outer_.path() / "outside.json") && fs::exists(folder_ / "organs/kidney.obj"));
+  EXPECT_TRUE(fs::is_symlink(folder_ / ".ctpm-removed" / number / "link.json"));
+  EXPECT_EQ(client.call("scene.removed", json::object())["result"], json::array());
 }
 
 TEST_F(SceneFilesTest, TheSceneOfEachSessionIsKnown) {
