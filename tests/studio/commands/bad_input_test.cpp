@@ -2,6 +2,7 @@
 // half-written.
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -167,6 +168,16 @@ TEST_F(BadInput, ASessionThatDoesNotExistOrIsNone) {
   for (const char* command : {"verify", "info", "replay"}) refuse({command, "letter.ctpm"}, {"letter.ctpm: error:"});
   refuse({"export", "letter.ctpm", "-o", "a.mp4"}, {"letter.ctpm: error:"});
   refuse({"recover", "letter.ctpm", "-o", "b.ctpm"}, {"letter.ctpm"});
+}
+
+TEST_F(BadInput, AFolderOrAPipeInPlaceOfASession) {
+  fs::create_directory(folder_.path() / "folder.ctpm");
+  ASSERT_EQ(::mkfifo((folder_.path() / "pipe.ctpm").c_str(), 0600), 0);
+  for (const char* none : {"folder.ctpm", "pipe.ctpm"}) {
+    for (const char* command : {"verify", "info", "replay"}) refuse({command, none}, {"it is not a regular file"});
+    refuse({"recover", none, "-o", "b.ctpm"}, {std::string(none) + ": error: is not a session file: it is not a"});
+    refuse({"compare", none, none}, {"it is not a regular file"});
+  }
 }
 
 TEST_F(BadInput, ASessionThatIsCutShort) {
