@@ -161,6 +161,37 @@ TEST_F(CohortProgram, TheSameSessionsGiveTheSameFilesAndVerifyingChangesNoNumber
   EXPECT_TRUE(holds(slurp(path("verified/index.html")), "Every session was replayed as it was recorded"));
 }
 
+TEST_F(CohortProgram, AFolderIsWrittenAnewAndNoOtherFilesInIt) {
+  const std::vector<std::string> command{"cohort", "course.json", "--trainees", "trainees", "--no-pictures", "-o"};
+  const auto into = [&](const std::string& folder) {
+    std::vector<std::string> whole = command;
+    whole.push_back(folder);
+    return ctpm(whole);
+  };
+  for (int time = 0; time < 2; ++time) {
+    const ProgramOutcome done = into("again");
+    EXPECT_EQ(done.code, 0) << "time " << time << ": " << done.err;
+  }
+  write("site/index.html", "<p>somebody's page</p>");
+  write("table/results.csv", "somebody's table");
+  for (const char* folder : {"site", "table"}) {
+    const ProgramOutcome refused = into(folder);
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_TRUE(holds(refused.err, "exists already, and no report of this program lies beside it")) << refused.err;
+  }
+  // Said before the work begins, with everything else that is wrong.
+  for (const char* name : {"cohort", "calibrate", "compare"}) {
+    std::vector<std::string> wrong{name, "none.json", "-o", "course.json/out"};
+    if (wrong[0] == "cohort") wrong.insert(wrong.end(), {"--trainees", "trainees"});
+    if (wrong[0] == "compare") wrong.insert(wrong.end(), {"nor.ctpm", "--force-limit", "-1"});
+    const ProgramOutcome refused = ctpm(wrong);
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_TRUE(holds(refused.err, "none.json: error:") && holds(refused.err, "course.json/out: error: cannot be made"))
+        << refused.err;
+    EXPECT_EQ(holds(refused.err, "--force-limit: error:"), wrong[0] == "compare") << refused.err;
+  }
+}
+
 TEST_F(CohortProgram, TablesAndStatementsHoldEverySession) {
   ASSERT_EQ(ctpm({"cohort", "course.json", "--trainees", "trainees", "-o", "tables"}).code, 0);
   const auto rows = rows_of("tables");
