@@ -74,6 +74,10 @@ int run_cohort(const CohortArguments& arguments) {
   options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
   const Result<cohort::Cohort> measured = cohort::measure_cohort(*course, arguments.trainees, options);
   if (!measured) return print_errors(measured.errors());
+  if (arguments.experts.empty()) {
+    const cohort::SceneFindings scenes = cohort::find_other_scenes(*course);
+    print_warnings(scenes.errors), print_warnings(scenes.warnings);
+  }
   if (const Result<Done> ready = reports::prepare_folder(arguments.folder, cohort::kFirstPage); !ready)
     return print_errors(ready.errors());
   if (const Result<Done> written =

@@ -288,6 +288,66 @@ TEST_F(CohortProgram, AnonymisedSessionsAreOrderedByTheirElapsedTimes) {
   EXPECT_NEAR(force, peak("trainees/Ana/1.ctpm"), 1e-12) << "the earliest attempt is the first";
 }
 
+TEST_F(CohortProgram, AnonymisedSessionsAreOfTheirSceneWhateverItsNames) {
+  if (recordings::name_uuid("x").empty()) GTEST_SKIP() << "built without CTPM_SIGNING";
+  // Zones of which one is passed through; the names of organ and tool become pseudonyms.
+  std::string named = scene("pusher");
+  named.replace(named.find("\"name\": \"block\",\n      \"rig\""), 15, "\"name\": \"lump\"");
+  named.insert(named.rfind('}'),
+               R"(, "forbidden": [{"name": "vessel", "sphere": {"centre_mm": [0, 0, 36], "radius_mm": 4}}])");
+  write("named.json", named);
+  for (const char* name : {"named-experts/a", "named-experts/b", "named/Dan/1"})
+    record("named.json", "pusher", name, 12);
+  const ProgramOutcome hidden = ctpm({"anonymise", "named/Dan/1.ctpm", "--trainee", "Dan", "-o", "named-hidden/"});
+  ASSERT_EQ(hidden.code, 0) << hidden.err;
+  const ProgramOutcome done =
+      ctpm({"cohort", "--experts", "named-experts", "--trainees", "named-hidden", "-o", "named-out", "--no-pictures"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_TRUE(holds(done.out, "named-experts: 2 experts, 1 attempt")) << done.out << done.err;
+  std::string page;
+  for (const auto& file : fs::directory_iterator(path("named-out")))
+    if (file.path().filename().string().starts_with("trainee-")) page = slurp(file.path());
+  const auto zone = page.find("forbidden: zone-");
+  ASSERT_NE(zone, std::string::npos) << page;
+  EXPECT_FALSE(holds(page.substr(zone, page.find("</tr>", zone) - zone), "insufficient data"));
+  const std::string session = fs::directory_iterator(path("named-hidden"))->path().string();
+  const ProgramOutcome compared = ctpm({"compare", "named-experts/a.ctpm", session});
+  EXPECT_EQ(compared.code, 0) << compared.err;
+  // Of sessions that are not anonymised, names tell scenes apart.
+  EXPECT_EQ(ctpm({"compare", "named-experts/a.ctpm", "experts/e1.ctpm"}).code, 2);
+}
+
+TEST_F(CohortProgram, ACourseIsCheckedWithItsScenesAndItsExpertsSessions) {
+  EXPECT_EQ(ctpm({"check", "course.json"}).out, "course.json: good, 1 task; not validated\n");
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string text = slurp(path("course.json"));
+    return text.replace(text.find(from), from.size(), to);
+  };
+  // The scene was changed after the experts had recorded: trainees who record now belong to no task.
+  write("moved.json", changed("block.json", "other.json"));
+  const std::string warning =
+      "other.json: warning: is not the scene in which the experts of the task 'press' worked: its tools are pusher "
+      "instead of ball, in ";
+  const ProgramOutcome checked = ctpm({"check", "moved.json"});
+  EXPECT_EQ(checked.code, 0);
+  EXPECT_EQ(checked.out, "moved.json: good, 1 task; not validated, 1 warning\n");
+  EXPECT_TRUE(holds(checked.err, warning)) << checked.err;
+  const ProgramOutcome measured = ctpm({"cohort", "moved.json", "--trainees", "trainees", "-o", "m", "--no-pictures"});
+  EXPECT_EQ(measured.code, 0);
+  EXPECT_TRUE(holds(measured.err, warning)) << measured.err;
+
+  write("broken.json", "{}");
+  write("spoilt/a.ctpm", "no session");
+  write("broken-course.json", changed("block.json", "broken.json"));
+  std::string text = slurp(path("broken-course.json"));
+  write("broken-course.json", text.replace(text.find("\"experts\": \"experts\""), 20, "\"experts\": \"spoilt\""));
+  const ProgramOutcome refused = ctpm({"check", "broken-course.json"});
+  EXPECT_EQ(refused.code, 2);
+  for (const char* part :
+       {"spoilt/a.ctpm: error: is not a session file", "spoilt: error: holds no session", "broken.json:1:1: error:"})
+    EXPECT_TRUE(holds(refused.err, part)) << part << " is not in: " << refused.err;
+}
+
 TEST_F(CohortProgram, ForceIsCountedForTheOrganThatIsTouchedAndForTheZoneThatTheSceneForbids) {
   // Two livers beside each other; the tool presses the second one, and its tip ends in a zone.
   const std::string organs = R"({"name": "left", "mesh": "liver.obj", "material": {"preset": "liver"},
