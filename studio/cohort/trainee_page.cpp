@@ -158,8 +158,10 @@ reports::Plot curve_plot(const TaskResult& task, const std::vector<const Attempt
         {"experts, one spread", spread->mean - spread->deviation, spread->mean + spread->deviation, kExpertColour}};
   const auto mark = std::ranges::find(task.task.marks, std::string(m.key), &scenes::MarkSpec::measure);
   if (mark != task.task.marks.end()) {
-    for (const auto& pass : {mark->pass_at_least, mark->pass_at_most})
-      if (pass) plot.series.push_back(level("pass mark", attempts.size(), *pass));
+    // Two pass marks of a measure are drawn alike, and have one line in the legend.
+    if (mark->pass_at_least) plot.series.push_back(level("pass mark", attempts.size(), *mark->pass_at_least));
+    if (mark->pass_at_most)
+      plot.series.push_back(level(mark->pass_at_least ? "" : "pass mark", attempts.size(), *mark->pass_at_most));
   }
   show_declared(plot, task, measure);
   plot.x_range = {0.5, double(attempts.size()) + 0.5};

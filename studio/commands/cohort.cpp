@@ -44,8 +44,8 @@ std::vector<compare::MomentPictures> draw_pictures(const std::string& trainee, c
 
 void print_cohort(const cohort::Cohort& cohort) {
   for (const cohort::TaskResult& task : cohort.tasks) {
-    print("%s: %zu experts, %zu attempts\n", output::printable(task.task.name).c_str(), task.experts.size(),
-          task.attempts.size());
+    print("%s: %zu experts, %zu %s\n", output::printable(task.task.name).c_str(), task.experts.size(),
+          task.attempts.size(), task.attempts.size() == 1 ? "attempt" : "attempts");
     for (const std::string& person : cohort.trainees) {
       const auto attempts = task.attempts_of(person);
       if (attempts.empty()) continue;
