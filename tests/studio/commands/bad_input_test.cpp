@@ -237,6 +237,21 @@ TEST_F(BadInput, ExportOptionsOutOfRange) {
          {"--cutaway: error: got 'y=9999', the organs lie between -"});
 }
 
+TEST_F(BadInput, EveryPlaceIsSaidOnceAndNumbersAsTheyWereGiven) {
+  ASSERT_EQ(
+      run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"}, folder_.path())
+          .code,
+      0);
+  const auto exported = run_ctpm({"export", "a.ctpm", "-o", "nodir/a.mp4"}, folder_.path());
+  EXPECT_EQ(exported.err, "nodir/a.mp4: error: the folder nodir does not exist (create it first)\n");
+  refuse({"replay", "a.ctpm", "--from-s", "9"}, {"--from-s: got 9, the session lasts 0.1 s"});
+  refuse({"preview", "none.json", "-o", "nodir/a.png", "--size", "10x"},
+         {"--size: error:", "nodir", "none.json: error:"});
+  refuse({"stability", "--case", "none", "-o", "a.ctpm/out"}, {"--case: error:", "a.ctpm/out: error: cannot be made"});
+  fs::create_directory(folder_.path() / "folder");
+  refuse({"anonymise", "a.ctpm", "-o", "b.ctpm", "--key", "folder"}, {"folder: error: is a folder"});
+}
+
 TEST_F(BadInput, ModuliRadiiSpacingsAndViscositiesThatCannotBeAreAllNamedWithTheirPlaces) {
   const std::string preset = "\"preset\": \"skin\"", fill = "\"radius_mm\": 7, \"gap_mm\": 7";
   write("a.json",
