@@ -1,7 +1,9 @@
 #include "recordings/byte_hash.h"
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 #include <vector>
 
 #define XXH_STATIC_LINKING_ONLY  // the hash state is a member
@@ -31,6 +33,10 @@ std::string hash_text(std::uint64_t hash) {
 }
 
 Result<std::uint64_t> file_hash(const std::string& path) {
+  std::error_code ignored;
+  const std::filesystem::file_status what = std::filesystem::status(path, ignored);
+  if (!std::filesystem::exists(what)) return Error{path, "does not exist", ""};
+  if (std::filesystem::is_directory(what)) return Error{path, "is a folder, not a file", ""};
   std::ifstream in(path, std::ios::binary);
   if (!in) return Error{path, "cannot be read", ""};
   ByteHash hash;

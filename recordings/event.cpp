@@ -101,7 +101,8 @@ std::string describe(const Event& event, const Model& model) {
     case EventKind::device_lost:
       return of_second_hand(event) + event.reason + "; the pose is held";
     case EventKind::device_back:
-      return of_second_hand(event) + with_number("device is back; the pose was held for %.3g s", event.held) +
+      return of_second_hand(event) +
+             with_number("good poses come again; the pose was held for %.3g s in all", event.held) +
              ", samples refused: " + std::to_string(event.refused_samples);
     case EventKind::note:
       break;

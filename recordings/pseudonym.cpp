@@ -55,6 +55,8 @@ Result<PseudonymKey> PseudonymKey::read_or_make(const std::string& path, bool& i
     if (auto r = write_new(path, key.bytes_); !r) return r.errors();
     return key;
   }
+  if (std::filesystem::is_directory(path, ignored))
+    return Error{path, "is a folder, not a file", "a file that does not exist is made, with a new key"};
   std::ifstream in(path, std::ios::binary);
   std::vector<unsigned char> bytes;
   for (std::istreambuf_iterator<char> at(in), end; at != end && bytes.size() <= largest_key; ++at)

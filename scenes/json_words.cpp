@@ -45,7 +45,11 @@ class MistakeFinder {
   explicit MistakeFinder(std::string_view text) : text_(text) {}
 
   std::optional<JsonMistake> find() {
-    if (skip_space(); is_at_end()) return mistake("the text is empty", "a scene begins with {");
+    if (skip_space(); is_at_end()) return mistake("the text is empty", "it should begin with {");
+    if (text_.starts_with("SQLite format 3"))
+      return mistake("this is a recorded session, or another database, and no text", "");
+    // No text of any encoding that is read holds zeros, and what is said about single letters would help nobody.
+    if (text_.find('\0') != std::string_view::npos) return mistake("this is no text", "");
     enum class Wanted { value, first_value, key, first_key, more, nothing } wanted = Wanted::value;
     const auto after_value = [&] { return open_.empty() ? Wanted::nothing : Wanted::more; };
     for (skip_space();; skip_space()) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 namespace ctpm::recordings::session_file {
@@ -40,10 +42,14 @@ std::optional<std::uint64_t> take_varint(ByteView& bytes) {
 class Pages {
  public:
   Result<Done> open(const std::string& path) {
+    // A folder opens like a file, and its end is told to be where no file ends.
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) return Error{path, "is not a regular file", ""};
     file_.open(path, std::ios::binary | std::ios::ate);
     if (!file_) return Error{path, "cannot be opened", ""};
     const auto size = static_cast<std::uint64_t>(file_.tellg());
     for (std::uint64_t at = 0; at + page_size <= size; at += page_size) places_.push_back(std::pair{false, at});
+    if (!std::filesystem::is_regular_file(path + "-wal", ignored)) return Done{};
     log_.open(path + "-wal", std::ios::binary | std::ios::ate);
     if (log_) read_log(static_cast<std::uint64_t>(log_.tellg()));
     return Done{};

@@ -54,7 +54,8 @@ std::uint32_t big_endian(const std::uint8_t* bytes) {
 /// Rejects files that are not sessions with a clear message, before SQLite opens them. Returns whether the file names a
 /// log that is missing.
 Result<bool> check_file(const std::string& path, bool salvage) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  // Without O_NONBLOCK, opening a pipe waits for somebody who writes to it.
+  const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (file < 0) {
     if (errno == ENOENT) return Error{path, "does not exist", ""};
     return Error{path, std::string("cannot be opened: ") + std::strerror(errno), ""};

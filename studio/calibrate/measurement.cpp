@@ -37,6 +37,7 @@ class MeasurementReader {
 
   bool read_header(std::string_view line) {
     static const std::set<std::string_view> kKnown{"time_s", "depth_mm", "force_n", "load_n", "specimen"};
+    if (output::has_other_separators(line)) return add(1, output::kOtherSeparators, output::kSeparatorHint), false;
     for (const output::CsvCell& cell : output::csv_cells(line)) {
       const std::string name(cell.text.substr(0, 40));
       if (!kKnown.contains(cell.text))
@@ -100,9 +101,14 @@ class MeasurementReader {
     if (measurements_.empty()) add(1, "there is no row after the names of the columns");
     for (const Measurement& one : measurements_) {
       if (one.rows.size() < kLeastRows)
-        errors_.push_back(
-            {one.name,
-             "has " + std::to_string(one.rows.size()) + " rows, must have at least " + std::to_string(kLeastRows), ""});
+        errors_.push_back({one.name,
+                           "has " + std::to_string(one.rows.size()) + (one.rows.size() == 1 ? " row" : " rows") +
+                               ", must have at least " + std::to_string(kLeastRows),
+                           ""});
+      // The specimen is at rest at 0 s. A force that was measured there under a press is met by no material.
+      if (one.kind == Kind::relaxation && one.rows.front().time <= 0 && one.rows.front().imposed > 0)
+        errors_.push_back({one.name, "is pressed at 0 s already, and the network is at rest then",
+                           "let it begin with 0 mm and 0 N at 0 s, and the depth at the time when it was reached"});
       const double last = one.rows.back().imposed;
       if (one.kind == Kind::creep && (last <= 0 || std::any_of(one.rows.begin(), one.rows.end(),
                                                                [&](const Row& row) { return row.imposed > last; })))

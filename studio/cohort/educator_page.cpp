@@ -84,10 +84,10 @@ reports::Table band_table(const Cohort& cohort, const TaskResult& task) {
                    {"experts", "experts"},
                    {"mean", "experts' mean"},
                    {"deviation", "spread"},
-                   {"interval", confidence + " of their mean"},
+                   {"interval", confidence + " interval"},
                    {"trainees", "trainees"},
                    {"latest", "trainees' mean"},
-                   {"latest_interval", confidence + " of theirs"},
+                   {"latest_interval", confidence + " interval"},
                    {"mark", "pass mark"}};
   for (const std::size_t i : shown_measures(task)) {
     const compare::Measure& m = *compare::all_measures()[i];
@@ -144,7 +144,7 @@ reports::Plot cohort_curve(const Cohort& cohort, const TaskResult& task, std::si
 /// How many have learned a task, and what most of them miss.
 std::string task_text(const Cohort& cohort, const TaskResult& task) {
   const std::vector<std::size_t> people = people_of(cohort, task);
-  const std::string of_all = " of " + std::to_string(people.size()) + " trainees ";
+  const std::string of_all = " of " + counted(people.size(), "trainee") + " ";
   if (people.empty()) return task.task.name + ": nobody has tried it.";
   if (!task.has_marks())
     return task.task.name + ": " + counted(task.attempts.size(), "attempt") + " of " +
@@ -158,10 +158,12 @@ std::string task_text(const Cohort& cohort, const TaskResult& task) {
     passed += latest.passed.value_or(false);
     for (const std::string& key : latest.missed) ++missed[latest.value_of(key).measure->title];
   }
-  std::string text = task.task.name + ": " + std::to_string(learned) + of_all + "have learned it, " +
-                     std::to_string(passed) + " passed in the latest attempt.";
+  std::string text = task.task.name + ": " + std::to_string(learned) + of_all + (learned == 1 ? "has" : "have") +
+                     " learned it, " + std::to_string(passed) + " passed in the latest attempt.";
   const auto most = std::ranges::max_element(missed, {}, [](const auto& entry) { return entry.second; });
-  if (most != missed.end()) text += " Most miss: " + most->first + " (" + std::to_string(most->second) + ").";
+  if (most != missed.end())
+    text += " Missed most often: " + most->first + " (" + std::to_string(most->second) + " of " +
+            std::to_string(people.size()) + ").";
   return text;
 }
 
@@ -176,7 +178,9 @@ std::string educator_page(const Cohort& cohort) {
   const std::string first = points.front();
   points.erase(points.begin());
   if (!cohort.left_out.empty())
-    points.push_back(std::to_string(cohort.left_out.size()) + " sessions belong to no task and are left out.");
+    points.push_back(counted(cohort.left_out.size(), "session") + (cohort.left_out.size() == 1
+                                                                       ? " belongs to no task and is left out."
+                                                                       : " belong to no task and are left out."));
   report.conclude(reports::ReportVerdict::shown, first, points);
   add_caveats(report, cohort);
   for (const TaskResult& task : cohort.tasks) {

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 
 #include "recordings/session_reader.h"
 #include "studio/compare/session_track.h"
+#include "studio/loading/loaded_scene.h"
 #include "studio/session/anonymise.h"
 
 namespace ctpm::cohort {
@@ -34,6 +36,23 @@ std::string person_of(const SessionReader& session, const fs::path& file, const 
   return below.has_parent_path() ? below.begin()->string() : file.stem().string();
 }
 
+/// The scene of a session, as it is told from others.
+struct Scene {
+  std::uint64_t with_names = 0, without_names = 0;
+  bool is_anonymised = false;
+};
+
+Scene scene_of(const SessionReader& session) {
+  const Model& model = session.start().model;
+  return {compare::scene_hash(model), compare::scene_hash(model, compare::Names::do_not_count),
+          session::begins_at_elapsed_time(session)};
+}
+
+/// As compare::check_same_scene().
+bool are_same(const Scene& a, const Scene& b) {
+  return a.is_anonymised || b.is_anonymised ? a.without_names == b.without_names : a.with_names == b.with_names;
+}
+
 /// Collects the sessions and everything that is wrong with them.
 class Gatherer {
  public:
@@ -47,10 +66,10 @@ class Gatherer {
       if (!session) continue;
       ++count;
       add(found_.experts, *session, file, folder, task);
-      const std::uint64_t scene = compare::scene_hash(session->start().model);
+      const Scene scene = scene_of(*session);
       if (count == 1)
         scenes_[task] = scene, first_[task] = file.string();
-      else if (scene != scenes_[task])
+      else if (!are_same(scene, *scenes_[task]))
         errors_.push_back(
             {file.string(), "is of another scene than " + first_[task], "the experts of a task work in one scene"});
     }
@@ -66,10 +85,10 @@ class Gatherer {
     for (const fs::path& file : files) {
       const Result<SessionReader> session = open(file);
       if (!session) continue;
-      const std::uint64_t scene = compare::scene_hash(session->start().model);
+      const Scene scene = scene_of(*session);
       std::vector<std::size_t> tasks;
       for (std::size_t i = 0; i < scenes_.size(); ++i)
-        if (scenes_[i] == scene) tasks.push_back(i);
+        if (scenes_[i] && are_same(*scenes_[i], scene)) tasks.push_back(i);
       const std::size_t candidates = tasks.size();
       if (candidates > 1)
         std::erase_if(tasks, [&](std::size_t i) {
@@ -83,6 +102,11 @@ class Gatherer {
         errors_.push_back({file.string(), "may be of several tasks, because they are in one scene",
                            "name its folder or the file after the task"});
     }
+  }
+
+  Result<Done> experts_checked() const {
+    if (!errors_.empty()) return errors_;
+    return Done{};
   }
 
   Result<Gathered> finish() {
@@ -113,7 +137,7 @@ class Gatherer {
   }
 
   const scenes::CourseSpec& course_;
-  std::vector<std::uint64_t> scenes_;  ///< of each task
+  std::vector<std::optional<Scene>> scenes_;  ///< of each task
   std::map<std::size_t, std::string> first_;
   std::map<std::string, std::string> seen_;
   Gathered found_;
@@ -127,6 +151,33 @@ Result<Gathered> gather(const scenes::CourseSpec& course, const std::string& tra
   for (std::size_t i = 0; i < course.tasks.size(); ++i) gatherer.add_experts(i);
   gatherer.add_trainees(trainees);
   return gatherer.finish();
+}
+
+Result<Done> check_experts(const scenes::CourseSpec& course) {
+  Gatherer gatherer(course);
+  for (std::size_t i = 0; i < course.tasks.size(); ++i) gatherer.add_experts(i);
+  return gatherer.experts_checked();
+}
+
+SceneFindings find_other_scenes(const scenes::CourseSpec& course, const scenes::LoadOptions& options) {
+  SceneFindings found;
+  for (const scenes::TaskSpec& task : course.tasks) {
+    const Result<loading::LoadedScene> scene = loading::load_whole_scene(task.scene, options);
+    if (!scene) found.errors.insert(found.errors.end(), scene.errors().begin(), scene.errors().end());
+    const std::vector<fs::path> files = files_below(task.experts);
+    if (!scene || files.empty()) continue;
+    const Result<SessionReader> expert = SessionReader::open(files.front().string());
+    if (!expert) continue;
+    const compare::Names names =
+        session::begins_at_elapsed_time(*expert) ? compare::Names::do_not_count : compare::Names::count;
+    const std::string reason = compare::scene_difference(expert->start().model, scene->built.model, names);
+    if (!reason.empty())
+      found.warnings.push_back({task.scene,
+                                "is not the scene in which the experts of the task '" + task.name +
+                                    "' worked: " + reason + ", in " + files.front().string(),
+                                "sessions that are recorded in it now belong to no task"});
+  }
+  return found;
 }
 
 scenes::CourseSpec course_of_folder(const std::string& experts) {

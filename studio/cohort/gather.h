@@ -6,6 +6,7 @@
 
 #include "core/model/result.h"
 #include "scenes/course.h"
+#include "scenes/scene_file.h"
 
 namespace ctpm::cohort {
 
@@ -29,6 +30,18 @@ struct Gathered {
 /// of one task in two scenes; a task with fewer than two experts; a session that occurs twice; two tasks in one scene
 /// between which the path of a session does not choose; a folder without any session.
 Result<Gathered> gather(const scenes::CourseSpec& course, const std::string& trainees);
+
+/// Checks the experts' sessions of a course. Errors: those of gather() that concern them.
+Result<Done> check_experts(const scenes::CourseSpec& course);
+
+/// What is wrong with the scenes of a course.
+struct SceneFindings {
+  Errors errors;    ///< of scenes that cannot be loaded
+  Errors warnings;  ///< tasks whose experts worked in another scene
+};
+
+/// Compares the scene of each task, as its file is now, with that of the experts' sessions.
+SceneFindings find_other_scenes(const scenes::CourseSpec& course, const scenes::LoadOptions& options = {});
 
 /// A course of one task that nobody has written: all measures of the experts in a folder, and no pass marks.
 scenes::CourseSpec course_of_folder(const std::string& experts);

@@ -122,7 +122,7 @@ std::string page_name(const Cohort& cohort, std::size_t trainee) {
 Result<Done> write_cohort(const Cohort& cohort, const std::string& folder, const std::string& home,
                           const MomentArtist& draw, int threads) {
   const reports::Table rows = long_table(cohort);
-  std::vector<reports::ReportFile> files{{"index.html", educator_page(cohort)},
+  std::vector<reports::ReportFile> files{{kFirstPage, educator_page(cohort)},
                                          {"results.csv", reports::to_csv(rows)},
                                          {"statements.jsonl", statements(cohort, home)}};
   // Each picture takes a replay of its own.
@@ -135,7 +135,7 @@ Result<Done> write_cohort(const Cohort& cohort, const std::string& folder, const
   }
   if (Result<Done> written = reports::write_sqlite(folder + "/results.sqlite", "result", rows); !written)
     return written;
-  return reports::write_report(folder, files);
+  return reports::write_report(folder, files, kFirstPage);
 }
 
 }  // namespace ctpm::cohort

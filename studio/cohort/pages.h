@@ -11,7 +11,10 @@
 
 namespace ctpm::cohort {
 
-/// The page of everybody: index.html.
+/// Name of the page of everybody.
+inline constexpr const char* kFirstPage = "index.html";
+
+/// The page of everybody.
 std::string educator_page(const Cohort& cohort);
 
 /// Draws moments of a trainee's session and of an expert's, each of them [s]; none if they cannot be drawn.

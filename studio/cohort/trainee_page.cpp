@@ -97,6 +97,15 @@ reports::Table latest_table(const TaskResult& task, const Attempt& latest) {
   return without_empty_columns(std::move(table));
 }
 
+/// Whether structure `i` of an attempt is structure `i` of an expert. Anonymised sessions hold pseudonyms of the names,
+/// and both are of one scene, so that there the order tells it.
+bool is_same_structure(const Attempt& attempt, const Attempt& expert, std::size_t i) {
+  if (i >= expert.structures.size() || attempt.structures[i].is_zone != expert.structures[i].is_zone) return false;
+  if (attempt.structures[i].name == expert.structures[i].name) return true;
+  return (attempt.session.is_elapsed || expert.session.is_elapsed) &&
+         attempt.structures.size() == expert.structures.size();
+}
+
 /// What the latest attempt did to each organ and forbidden zone, beside the experts.
 reports::Table structures_table(const TaskResult& task, const Attempt& latest) {
   reports::Table table;
@@ -109,8 +118,7 @@ reports::Table structures_table(const TaskResult& task, const Attempt& latest) {
     const auto mean = [&](double compare::StructureLoad::*value, double scale) -> reports::Cell {
       std::vector<double> values;
       for (const Attempt& expert : task.experts)
-        if (i < expert.structures.size() && expert.structures[i].name == load.name)
-          values.push_back(scale * expert.structures[i].*value);
+        if (is_same_structure(latest, expert, i)) values.push_back(scale * expert.structures[i].*value);
       const std::optional<Spread> spread = spread_of(values);
       return spread ? reports::Cell(spread->mean) : reports::Cell(std::string("insufficient data"));
     };
@@ -150,8 +158,10 @@ reports::Plot curve_plot(const TaskResult& task, const std::vector<const Attempt
         {"experts, one spread", spread->mean - spread->deviation, spread->mean + spread->deviation, kExpertColour}};
   const auto mark = std::ranges::find(task.task.marks, std::string(m.key), &scenes::MarkSpec::measure);
   if (mark != task.task.marks.end()) {
-    for (const auto& pass : {mark->pass_at_least, mark->pass_at_most})
-      if (pass) plot.series.push_back(level("pass mark", attempts.size(), *pass));
+    // Two pass marks of a measure are drawn alike, and have one line in the legend.
+    if (mark->pass_at_least) plot.series.push_back(level("pass mark", attempts.size(), *mark->pass_at_least));
+    if (mark->pass_at_most)
+      plot.series.push_back(level(mark->pass_at_least ? "" : "pass mark", attempts.size(), *mark->pass_at_most));
   }
   show_declared(plot, task, measure);
   plot.x_range = {0.5, double(attempts.size()) + 0.5};

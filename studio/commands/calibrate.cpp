@@ -12,6 +12,7 @@
 #include "studio/commands/console.h"
 #include "studio/commands/stop_signal.h"
 #include "studio/output/files.h"
+#include "studio/reports/report.h"
 
 namespace ctpm::commands {
 namespace {
@@ -84,6 +85,8 @@ int run_calibrate(const CalibrateArguments& arguments) {
   Errors errors;
   if (!measurements) errors = measurements.errors();
   const std::optional<loading::LoadedScene> block = block_of(arguments, errors);
+  if (const Result<Done> folder = reports::check_folder(arguments.folder); !folder)
+    errors.insert(errors.end(), folder.errors().begin(), folder.errors().end());
   if (!errors.empty()) return print_errors(errors);
   const Result<loading::LoadedScene> rig = loading::load_whole_scene(kScenes + "/paper/rig-liver.json");
   if (!rig) return print_errors(rig.errors());

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "scenes/course.h"
+#include "studio/cohort/gather.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/compare/measure_table.h"
@@ -30,19 +31,26 @@ Errors errors_of_scripts(const CheckArguments& arguments, const std::string& sce
   return all;
 }
 
-/// Whether a course is good; prints what is wrong.
-bool is_good_course(const std::string& path) {
-  const Result<scenes::CourseSpec> course = scenes::load_course(path, compare::measure_keys());
-  if (!course) return print_errors(course.errors()), false;
-  const std::size_t tasks = course->tasks.size();
-  print("%s: good, %zu %s; %s\n", path.c_str(), tasks, tasks == 1 ? "task" : "tasks",
-        course->evidence.empty() ? "not validated" : ("validated by " + output::printable(course->evidence)).c_str());
-  return true;
-}
-
 /// As the page of the studio counts them: ", 2 warnings"; nothing where there are none.
 std::string counted_warnings(std::size_t count) {
   return count == 0 ? "" : ", " + std::to_string(count) + (count == 1 ? " warning" : " warnings");
+}
+
+/// Whether a course is good, with its experts' sessions and its scenes; prints what is wrong.
+bool is_good_course(const std::string& path, const scenes::LoadOptions& load) {
+  const Result<scenes::CourseSpec> course = scenes::load_course(path, compare::measure_keys());
+  if (!course) return print_errors(course.errors()), false;
+  const Result<Done> experts = cohort::check_experts(*course);
+  const cohort::SceneFindings scenes = cohort::find_other_scenes(*course, load);
+  Errors errors = experts ? Errors{} : experts.errors();
+  errors.insert(errors.end(), scenes.errors.begin(), scenes.errors.end());
+  if (!errors.empty()) return print_errors(errors), false;
+  print_warnings(scenes.warnings);
+  const std::size_t tasks = course->tasks.size();
+  print("%s: good, %zu %s; %s%s\n", path.c_str(), tasks, tasks == 1 ? "task" : "tasks",
+        course->evidence.empty() ? "not validated" : ("validated by " + output::printable(course->evidence)).c_str(),
+        counted_warnings(scenes.warnings.size()).c_str());
+  return true;
 }
 
 int run_check(const CheckArguments& arguments) {
@@ -51,7 +59,7 @@ int run_check(const CheckArguments& arguments) {
   int code = exit_good;
   for (const std::string& path : arguments.scenes) {
     if (scenes::is_course(path)) {
-      if (!is_good_course(path)) code = exit_bad_input;
+      if (!is_good_course(path, arguments.load)) code = exit_bad_input;
       continue;
     }
     const Errors of_scripts = errors_of_scripts(arguments, path);

@@ -44,8 +44,8 @@ std::vector<compare::MomentPictures> draw_pictures(const std::string& trainee, c
 
 void print_cohort(const cohort::Cohort& cohort) {
   for (const cohort::TaskResult& task : cohort.tasks) {
-    print("%s: %zu experts, %zu attempts\n", output::printable(task.task.name).c_str(), task.experts.size(),
-          task.attempts.size());
+    print("%s: %zu experts, %zu %s\n", output::printable(task.task.name).c_str(), task.experts.size(),
+          task.attempts.size(), task.attempts.size() == 1 ? "attempt" : "attempts");
     for (const std::string& person : cohort.trainees) {
       const auto attempts = task.attempts_of(person);
       if (attempts.empty()) continue;
@@ -63,7 +63,10 @@ void print_cohort(const cohort::Cohort& cohort) {
 
 int run_cohort(const CohortArguments& arguments) {
   const Result<scenes::CourseSpec> course = course_of(arguments);
-  if (!course) return print_errors(course.errors());
+  const Result<Done> folder = reports::check_folder(arguments.folder, cohort::kFirstPage);
+  Errors errors = course ? Errors() : course.errors();
+  if (!folder) errors.insert(errors.end(), folder.errors().begin(), folder.errors().end());
+  if (!errors.empty()) return print_errors(errors);
   cohort::CohortOptions options;
   options.verify = arguments.verify;
   options.threads = int(std::max(1u, std::thread::hardware_concurrency()));
@@ -71,7 +74,12 @@ int run_cohort(const CohortArguments& arguments) {
   options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
   const Result<cohort::Cohort> measured = cohort::measure_cohort(*course, arguments.trainees, options);
   if (!measured) return print_errors(measured.errors());
-  if (const Result<Done> ready = reports::prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
+  if (arguments.experts.empty()) {
+    const cohort::SceneFindings scenes = cohort::find_other_scenes(*course);
+    print_warnings(scenes.errors), print_warnings(scenes.warnings);
+  }
+  if (const Result<Done> ready = reports::prepare_folder(arguments.folder, cohort::kFirstPage); !ready)
+    return print_errors(ready.errors());
   if (const Result<Done> written =
           cohort::write_cohort(*measured, arguments.folder, arguments.home,
                                arguments.no_pictures ? cohort::MomentArtist() : draw_pictures, options.threads);

@@ -6,6 +6,7 @@
 
 #include "studio/compare/advice.h"
 #include "studio/output/number_text.h"
+#include "studio/output/printable.h"
 
 namespace ctpm::commands {
 namespace {
@@ -62,7 +63,7 @@ std::string worst_moment_command(const compare::ComparedSessions& compared) {
   char range[80];
   std::snprintf(range, sizeof range, "--from-s %.1f --to-s %.1f", std::max(0.0, moment.from_s - kAround),
                 std::min(std::floor(10 * trainee.seconds(trainee.tick_count())) / 10, moment.to_s + kAround));
-  return "ctpm export " + trainee.path + " -o worst.mp4 " + range;
+  return "ctpm export " + output::shell_word(trainee.path) + " -o worst.mp4 " + range;
 }
 
 }  // namespace ctpm::commands

@@ -45,11 +45,13 @@ Result<std::optional<scenes::Script>> script_of(const PreviewArguments& argument
 
 int run_preview(PreviewArguments arguments) {
   const Result<render::PictureSize> size = render::parse_picture_size(arguments.size);
-  if (!size) return print_errors(size.errors());
+  Errors errors = size ? Errors() : size.errors();
+  const auto add = [&](const Errors& more) { errors.insert(errors.end(), more.begin(), more.end()); };
   if (const Result<Done> writable = output::check_new(arguments.output, arguments.overwrite); !writable)
-    return print_errors(writable.errors());
+    add(writable.errors());
   const Result<loading::LoadedScene> scene = loading::load_whole_scene(arguments.scene, arguments.load);
-  if (!scene) return print_errors(scene.errors());
+  if (!scene) add(scene.errors());
+  if (!errors.empty()) return print_errors(errors);
   print_warnings(scene->scene.warnings);
   // With --spheres the surface stands on the left half and the layered spheres on the right.
   const int width = arguments.spheres ? size->width / 2 : size->width;

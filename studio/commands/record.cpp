@@ -28,6 +28,7 @@ struct RecordArguments {
   std::string scene, parent, output;
   std::optional<double> at_s;
   SourceRequest source;
+  std::vector<std::string> device_flags;  ///< that were given
   double duration_s = 0;
   bool overwrite = false, as_fast_as_possible = false;
   scenes::LoadOptions load;
@@ -55,6 +56,9 @@ Errors check(const RecordArguments& arguments) {
     if (std::find(errors.begin(), errors.end(), error) == errors.end()) errors.push_back(std::move(error));
   if (devices::asks_for_device(arguments.source.second) && !devices::asks_for_device(arguments.source.device))
     errors.push_back({"record", "a device for the second hand needs one for the first", "--igtl or --igtl-listen"});
+  if (!devices::asks_for_device(arguments.source.device) && !devices::asks_for_device(arguments.source.second))
+    for (const std::string& flag : arguments.device_flags)
+      errors.push_back({flag, "is of a device, and none is asked for", "give --igtl or --igtl-listen"});
   std::error_code ignored;
   if (const Result<Done> writable = output::check_writable(arguments.output); !writable)
     errors.insert(errors.end(), writable.errors().begin(), writable.errors().end());
@@ -201,7 +205,10 @@ Command add_record(CLI::App& program) {
       ->check(CLI::Range(1, 64));
   app->add_flag("--allow-outside-paths", arguments->load.allow_outside_paths,
                 "Meshes may lie outside the scene's folder");
-  return {app, [arguments] { return run_record(*arguments); }};
+  return {app, [arguments, app] {
+            arguments->device_flags = given_device_flags(*app);
+            return run_record(*arguments);
+          }};
 }
 
 }  // namespace ctpm::commands

@@ -66,6 +66,13 @@ void add_source(CLI::App& app, SourceRequest& request) {
   add_second_device_options(app, request.second);
 }
 
+std::vector<std::string> given_device_flags(const CLI::App& app) {
+  std::vector<std::string> given;
+  for (const CLI::Option* option : app.get_options())
+    if (option->get_group() == kDeviceGroup && option->count() > 0) given.push_back(option->get_name());
+  return given;
+}
+
 Result<OpenedDevices> open_devices(const SourceRequest& request) {
   OpenedDevices opened;
   Result<devices::OpenedDevice> first = devices::open_device(request.device);

@@ -30,6 +30,9 @@ inline constexpr const char* source_flags = "--script, --motion, --igtl, --igtl-
 /// Adds the flags of all sources.
 void add_source(CLI::App& app, SourceRequest& request);
 
+/// The flags of devices that were given, in the order in which they are added.
+std::vector<std::string> given_device_flags(const CLI::App& app);
+
 /// Number of requested sources.
 int count_of(const SourceRequest& request);
 

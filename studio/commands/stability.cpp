@@ -54,8 +54,10 @@ void print_runs(const std::vector<stability::StabilityRow>& rows) {
 
 int run_stability_command(const StabilityArguments& arguments) {
   const Result<std::vector<stability::StabilityCase>> cases = chosen_cases(arguments);
-  if (!cases) return print_errors(cases.errors());
-  if (const Result<Done> ready = reports::prepare_folder(arguments.folder); !ready) return print_errors(ready.errors());
+  Errors errors = cases ? Errors() : cases.errors();
+  if (const Result<Done> ready = reports::check_folder(arguments.folder); !ready)
+    errors.insert(errors.end(), ready.errors().begin(), ready.errors().end());
+  if (!errors.empty()) return print_errors(errors);
   const std::vector<stability::StabilityRow> rows = [&] {
     ProgressLine progress("running the stability cases");
     const std::size_t integrators = arguments.is_auto_only ? 1 : std::size(stability::kStabilityIntegrators);

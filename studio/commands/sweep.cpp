@@ -24,15 +24,19 @@ namespace {
 struct SweepArguments {
   std::vector<std::string> files;
   std::string folder;
-  std::string each;  ///< a command with its arguments; empty: a sweep
-  int jobs = 0;      ///< 0: as many as there are cores
+  std::optional<std::string> each;  ///< a command with its arguments; unset: a sweep
+  int jobs = 0;                     ///< 0: as many as there are cores
   std::optional<std::size_t> from, to;
   bool allow_incomplete = false, with_slurm = false;
   sweep::SlurmRequest slurm;
 };
 
 Result<sweep::Plan> make_plan(const SweepArguments& arguments) {
-  if (!arguments.each.empty()) return sweep::plan_each(CLI::detail::split_up(arguments.each), arguments.files);
+  if (arguments.each) {
+    const std::vector<std::string> command = CLI::detail::split_up(*arguments.each);
+    if (command.empty()) return Error{"--each", "needs a command", "one of compare, export, info, verify"};
+    return sweep::plan_each(command, arguments.files);
+  }
   if (arguments.files.size() != 1) return Error{"sweep plan", "takes one sweep file", "--each COMMAND takes sessions"};
   Result<sweep::Sweep> sweep = sweep::Sweep::load(arguments.files.front());
   if (!sweep) return sweep.errors();

@@ -10,6 +10,7 @@
 #include "recordings/replay.h"
 #include "recordings/state_hash.h"
 #include "scenes/scene_file.h"
+#include "studio/session/anonymise.h"
 #include "studio/session/probes.h"
 
 namespace ctpm::compare {
@@ -237,12 +238,13 @@ std::vector<Spell> cuts_of(const SessionTrack& track, const Model& model) {
 /// The fields of a Model as bytes, by name.
 struct FieldBytes {
   std::vector<std::pair<std::string, std::string>>& fields;
+  Names names = Names::count;
   std::string prefix = {};
 
   template <class T>
   void operator()(std::string_view name, const T& value) {
     if constexpr (std::is_same_v<T, std::string>) {
-      fields.emplace_back(prefix + std::string(name), value);
+      if (names == Names::count) fields.emplace_back(prefix + std::string(name), value);
     } else {
       static_assert(std::is_trivially_copyable_v<T>);
       fields.emplace_back(prefix + std::string(name), std::string(reinterpret_cast<const char*>(&value), sizeof value));
@@ -255,14 +257,16 @@ struct FieldBytes {
                           std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)));
     } else {
       for (std::size_t i = 0; i < values.size(); ++i)
-        for_each_field(values[i], FieldBytes{fields, prefix + std::string(name) + "[" + std::to_string(i) + "]."});
+        for_each_field(values[i],
+                       FieldBytes{fields, names, prefix + std::string(name) + "[" + std::to_string(i) + "]."});
     }
   }
 };
 
 /// The difference of two networks in words; empty if only numbers differ.
-std::string difference_in_words(const Model& a, const Model& b) {
-  const auto list = [](const auto& things) {
+std::string difference_in_words(const Model& a, const Model& b, Names count_names) {
+  const auto list = [&](const auto& things) {
+    if (count_names == Names::do_not_count) return std::to_string(things.size());
     std::string names;
     for (const auto& thing : things) names += (names.empty() ? "" : ", ") + thing.name;
     return names.empty() ? std::string("none") : names;
@@ -369,25 +373,29 @@ Result<SessionTrack> read_track(recordings::SessionReader& session, Replaying re
   return track;
 }
 
+std::string scene_difference(const Model& expert, const Model& other, Names names) {
+  if (std::string words = difference_in_words(expert, other, names); !words.empty()) return words;
+  std::vector<std::pair<std::string, std::string>> fields_a, fields_b;
+  for_each_field(expert, FieldBytes{fields_a, names});
+  for_each_field(other, FieldBytes{fields_b, names});
+  const auto [in_a, in_b] = std::mismatch(fields_a.begin(), fields_a.end(), fields_b.begin(), fields_b.end());
+  if (in_a == fields_a.end() && in_b == fields_b.end()) return "";
+  return "its network differs in " + (in_a != fields_a.end() ? in_a->first : in_b->first);
+}
+
 Result<Done> check_same_scene(const recordings::SessionReader& expert, const recordings::SessionReader& trainee) {
-  const Model& a = expert.start().model;
-  const Model& b = trainee.start().model;
-  std::string reason = difference_in_words(a, b);
-  if (reason.empty()) {
-    std::vector<std::pair<std::string, std::string>> fields_a, fields_b;
-    for_each_field(a, FieldBytes{fields_a});
-    for_each_field(b, FieldBytes{fields_b});
-    const auto [in_a, in_b] = std::mismatch(fields_a.begin(), fields_a.end(), fields_b.begin(), fields_b.end());
-    if (in_a == fields_a.end() && in_b == fields_b.end()) return Done{};
-    reason = "its network differs in " + (in_a != fields_a.end() ? in_a->first : in_b->first);
-  }
+  const std::string reason = scene_difference(
+      expert.start().model, trainee.start().model,
+      session::begins_at_elapsed_time(expert) || session::begins_at_elapsed_time(trainee) ? Names::do_not_count
+                                                                                          : Names::count);
+  if (reason.empty()) return Done{};
   return Error{trainee.path(), "is of another scene than " + expert.path() + ": " + reason,
                "sessions can be compared if they were recorded in the same scene"};
 }
 
-std::uint64_t scene_hash(const Model& model) {
+std::uint64_t scene_hash(const Model& model, Names names_count) {
   std::vector<std::pair<std::string, std::string>> fields;
-  for_each_field(model, FieldBytes{fields});
+  for_each_field(model, FieldBytes{fields, names_count});
   recordings::ByteHash hash;
   for (const auto& [name, bytes] : fields) {
     const std::string head = name + " " + std::to_string(bytes.size()) + "\n";

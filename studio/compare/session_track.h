@@ -86,11 +86,17 @@ Result<SessionTrack> read_track(recordings::SessionReader& session, Replaying re
                                 const ReplayWatch& watch = {});
 
 /// Checks that both sessions have the same Model: network, tools and physics. Values that do not act on the tissue
-/// (cameras, colours) may differ. Errors: the first difference.
+/// (cameras, colours) may differ, and names if one of the sessions is anonymised. Errors: the first difference.
 Result<Done> check_same_scene(const recordings::SessionReader& expert, const recordings::SessionReader& trainee);
 
-/// A number that two Models share where check_same_scene() finds no difference, and else almost never.
-std::uint64_t scene_hash(const Model& model);
+/// Whether names of organs, tools and obstacles tell scenes apart. Anonymised sessions hold pseudonyms of them.
+enum class Names { count, do_not_count };
+
+/// What differs between two Models, in words; empty: nothing.
+std::string scene_difference(const Model& expert, const Model& other, Names names = Names::count);
+
+/// A number that two Models share where scene_difference() finds nothing, and else almost never.
+std::uint64_t scene_hash(const Model& model, Names names = Names::count);
 
 /// The paths of the tool's tip during each cut [m].
 std::vector<Path> cut_paths(const SessionTrack& track);

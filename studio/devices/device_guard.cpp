@@ -67,6 +67,8 @@ void DeviceGuard::accept(const DeviceReport& report) {
   arrival_ = report.arrival;
   device_time_ = report.device_time > 0 ? report.device_time : device_time_;
   track_.count = 0;
+  if (held_since_) held_ += std::max(0.0, report.arrival - *held_since_);
+  held_since_.reset();
 }
 
 bool DeviceGuard::take(const DeviceReport& report) {
@@ -83,6 +85,9 @@ bool DeviceGuard::take(const DeviceReport& report) {
         last_note_ = report.arrival;
         add({.kind = recordings::EventKind::note, .text = report.text});
       }
+      return false;
+    case DeviceNews::other_name:
+      other_name_ = report.name.data();
       return false;
     case DeviceNews::bad_message:
       ++counts_.unread;
@@ -119,7 +124,7 @@ void DeviceGuard::look(double now) {
     verdict_ = "the device was lost: nothing usable came for " + seconds(silence) + " (" + faults_.front() + ")";
   if (!faults_.empty() && arrival_ > last_fault_ && now - last_fault_ > kQuiet) {
     add({.kind = recordings::EventKind::device_back,
-         .held = last_fault_ - spell_began_,
+         .held = held_,
          .refused_samples = counts_.refused - refused_before_spell_});
     faults_.clear();
   }
@@ -127,7 +132,8 @@ void DeviceGuard::look(double now) {
 
 void DeviceGuard::fault(const char* text, double now) {
   last_fault_ = now, last_fault_text_ = text;
-  if (faults_.empty()) spell_began_ = now, refused_before_spell_ = counts_.refused;
+  if (faults_.empty()) held_ = 0, refused_before_spell_ = counts_.refused;
+  if (!held_since_) held_since_ = now;
   if (std::find(faults_.begin(), faults_.end(), text) != faults_.end()) return;
   faults_.push_back(text);
   add({.kind = recordings::EventKind::device_lost, .reason = text});

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,6 +62,9 @@ class DeviceGuard {
   /// Why the last refused sample was refused, or the connection ended; empty if nothing was.
   const char* last_fault() const { return last_fault_text_; }
 
+  /// A device whose poses are skipped, because another one is asked for; empty: none came.
+  const std::string& other_name() const { return other_name_; }
+
  private:
   static constexpr double kQuiet = 0.1;      ///< a device is back after this time without a fault [s]
   static constexpr double kForgiven = 0.25;  ///< [s]
@@ -92,10 +96,12 @@ class DeviceGuard {
   bool leapt_ = false;
   Track track_;
   const char* last_fault_text_ = "";
+  std::string other_name_;
   double last_note_ = -INFINITY;
   int event_count_ = 0;
-  std::vector<const char*> faults_;  ///< of the current spell of faults, each once
-  double spell_began_ = 0, last_fault_ = 0;
+  std::vector<const char*> faults_;   ///< of the current spell of faults, each once
+  double last_fault_ = 0, held_ = 0;  ///< held_: from faults of the spell to the next good poses, in all [s]
+  std::optional<double> held_since_;  ///< the first fault after the last good pose
   std::int64_t refused_before_spell_ = 0;
   std::string verdict_;
   std::vector<recordings::Event> events_;

@@ -36,11 +36,14 @@ bool DeviceSource::wait_for_first_pose(const std::function<bool()>& should_stop,
   std::string said;
   while (!guard_.has_pose() || guard_.pose_arrival() < began) {
     if (should_stop()) return false;
-    const std::string fault = guard_.last_fault();
-    if (tell && (fault != said || clock_() - told > kPatience)) {
-      const std::int64_t refused = guard_.counts().refused;
-      tell(fault.empty() ? "nothing has come yet" : fault + "; samples refused so far: " + std::to_string(refused));
-      said = fault, told = clock_();
+    const std::string fault = guard_.last_fault(), &other = guard_.other_name();
+    if (tell && (fault + other != said || clock_() - told > kPatience)) {
+      std::string text;
+      if (!fault.empty()) text = fault + "; samples refused so far: " + std::to_string(guard_.counts().refused);
+      if (!other.empty())
+        text += (text.empty() ? "" : "; ") + ("poses of '" + other + "' come, and another device is asked for");
+      tell(text.empty() ? "nothing has come yet" : text);
+      said = fault + other, told = clock_();
     }
     if (!take_reports(clock_())) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

@@ -156,14 +156,14 @@ bool IgtlStream::take(std::span<const std::uint8_t> bytes, double now, const Tel
     if (header_size_ == kHeaderSize && now - began_ > kMostBodyTime) begin_again(), searches_ = true;
     if (searches_) {
       if (!search(bytes)) return true;
-      if (!begin_body(now)) return false;
+      if (!begin_body(now, tell)) return false;
     } else if (header_size_ < kHeaderSize) {
       const std::size_t count = std::min(bytes.size(), kHeaderSize - header_size_);
       std::copy_n(bytes.begin(), count, header_.begin() + std::ptrdiff_t(header_size_));
       header_size_ += count;
       bytes = bytes.subspan(count);
       if (header_size_ < kHeaderSize) return true;
-      if (!begin_body(now)) return false;
+      if (!begin_body(now, tell)) return false;
     }
     if (is_too_large_) {
       refuse("a message of a wrong size", now, tell);
@@ -185,7 +185,7 @@ bool IgtlStream::take(std::span<const std::uint8_t> bytes, double now, const Tel
 }
 
 /// Decides from the header whether to read or skip a message. False if the header is invalid.
-bool IgtlStream::begin_body(double now) {
+bool IgtlStream::begin_body(double now, const Tell& tell) {
   began_ = now;
   const igtl_header header = decode(header_);
   const std::string_view type = text_of(header.name);
@@ -196,7 +196,14 @@ bool IgtlStream::begin_body(double now) {
   const bool is_position = type == "POSITION" || type == "QTRANS";
   kind_ = type == "TRANSFORM" ? Kind::transform : is_position ? Kind::position : Kind::sensor;
   const bool is_named = device_name_.empty() || text_of(header.device_name) == device_name_;
-  const bool is_read = type == "SENSOR" || ((type == "TRANSFORM" || is_position) && is_named);
+  const bool is_pose = type == "TRANSFORM" || is_position;
+  if (is_pose && !is_named && !std::exchange(told_other_name_, true)) {
+    DeviceReport report;
+    report.news = DeviceNews::other_name, report.arrival = now;
+    text_of(header.device_name).copy(report.name.data(), report.name.size() - 1);
+    tell(report);
+  }
+  const bool is_read = type == "SENSOR" || (is_pose && is_named);
   is_too_large_ = is_read && body_left_ > kMostBody;
   is_kept_ = is_read && !is_too_large_;
   return true;

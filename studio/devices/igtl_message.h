@@ -22,7 +22,7 @@ class IgtlStream {
  public:
   using Tell = std::function<void(const DeviceReport&)>;
 
-  /// Skips poses of devices other than `device_name`; empty: takes all.
+  /// Skips poses of devices other than `device_name`, and tells the name of the first of them; empty: takes all.
   explicit IgtlStream(std::string device_name) : device_name_(std::move(device_name)) {}
 
   /// Takes the next bytes, split anywhere, which arrived at `now` [s]. False if they cannot be OpenIGTLink; the
@@ -40,7 +40,7 @@ class IgtlStream {
  private:
   enum class Kind { transform, position, sensor };
 
-  bool begin_body(double now);
+  bool begin_body(double now, const Tell& tell);
   bool search(std::span<const std::uint8_t>& bytes);
   bool is_sure_header() const;
   void end_body(double now, const Tell& tell) const;
@@ -56,6 +56,7 @@ class IgtlStream {
   bool is_kept_ = false;                         ///< the body is read, not skipped
   bool is_too_large_ = false;                    ///< a message of a kind that is read, above kMostBody
   Kind kind_ = Kind::transform;
+  bool told_other_name_ = false;
 };
 
 /// The bytes of a SENSOR message named "Force" with three values in newton.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "recordings/byte_hash.h"
 #include "studio/film/captions.h"
@@ -41,13 +42,16 @@ Errors check_options(const std::string& path, const ExportOptions& options) {
   if (!level_of(options.overlay))
     errors.push_back(
         {output::option_name("export.overlay"), "got '" + options.overlay + "', must be none, small or full", ""});
-  // A folder must not exist yet, which the writer checks.
+  // A folder must not exist yet, which the writer checks. What is wrong with both places is said once.
   for (const std::string& file : {path, sidecar_of(path)})
     if (!path.ends_with('/'))
-      if (const Result<Done> is_new = output::check_new(file, options.overwrite); !is_new)
+      if (const Result<Done> is_new = output::check_new(file, options.overwrite); !is_new) {
         append(errors, is_new.errors());
-  append(errors, video::VideoWriter::check(path, options.size.width, options.size.height,
-                                           is_good_rate ? options.fps : ExportOptions().fps));
+        break;
+      }
+  for (Error& error : video::VideoWriter::check(path, options.size.width, options.size.height,
+                                                is_good_rate ? options.fps : ExportOptions().fps))
+    if (std::ranges::find(errors, error) == errors.end()) errors.push_back(std::move(error));
   return errors;
 }
 

@@ -20,6 +20,10 @@ std::vector<CsvCell> csv_cells(std::string_view line) {
   }
 }
 
+bool has_other_separators(std::string_view line) {
+  return line.find(',') == std::string_view::npos && line.find_first_of(";\t") != std::string_view::npos;
+}
+
 std::vector<CsvLine> csv_lines(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   std::vector<CsvLine> lines;

@@ -16,6 +16,11 @@ struct CsvCell {
 /// The values of a line, which must outlive them. Commas part values, also between quotes.
 std::vector<CsvCell> csv_cells(std::string_view line);
 
+/// Whether semicolons or tabs part the values of a line, as spreadsheets write where a comma is part of numbers.
+bool has_other_separators(std::string_view line);
+inline constexpr const char* kOtherSeparators = "semicolons or tabs part the values";
+inline constexpr const char* kSeparatorHint = "save it with commas between the values, and points in the numbers";
+
 /// A line of a CSV table that is not blank.
 struct CsvLine {
   std::size_t number = 0;  ///< from 1

@@ -159,45 +159,45 @@ Result<std::string> to_data_uri(const render::Frame& frame) {
 namespace {
 
 /// The first file that a report would replace in a folder which holds no report of this program; empty if none.
-std::string file_of_others(const std::string& folder) {
+std::string file_of_others(const std::string& folder, const std::string& page) {
   const std::filesystem::path place = folder;
   std::string head(2000, '\0');
-  std::ifstream page(place / "report.html", std::ios::binary);
-  page.read(head.data(), std::streamsize(head.size()));
+  std::ifstream written(place / page, std::ios::binary);
+  written.read(head.data(), std::streamsize(head.size()));
   if (head.find(kGenerator) != std::string::npos) return "";
   std::error_code ignored;
-  for (const char* name : {"report.html", "results.json", "results.csv"})
+  for (const std::string& name : {page, std::string("results.json"), std::string("results.csv")})
     if (std::filesystem::exists(place / name, ignored)) return (place / name).string();
   return "";
 }
 
 }  // namespace
 
-Result<Done> prepare_folder(const std::string& folder) {
+Result<Done> prepare_folder(const std::string& folder, const std::string& page) {
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (failure)
     return Error{folder, "cannot be made: " + failure.message(),
                  "give another folder with " + output::option_name("report.folder")};
-  if (const std::string other = file_of_others(folder); !other.empty())
+  if (const std::string other = file_of_others(folder, page); !other.empty())
     return Error{other, "exists already, and no report of this program lies beside it",
                  "give another folder with " + output::option_name("report.folder")};
-  return output::check_writable((std::filesystem::path(folder) / "report.html").string());
+  return output::check_writable((std::filesystem::path(folder) / page).string());
 }
 
-Result<Done> check_folder(const std::string& folder) {
+Result<Done> check_folder(const std::string& folder, const std::string& page) {
   std::error_code ignored;
   std::vector<std::filesystem::path> missing;
   for (std::filesystem::path place = std::filesystem::absolute(folder, ignored).lexically_normal();
        !place.empty() && !std::filesystem::exists(place, ignored); place = place.parent_path())
     missing.push_back(place);
-  const Result<Done> ready = prepare_folder(folder);
+  const Result<Done> ready = prepare_folder(folder, page);
   for (const std::filesystem::path& place : missing) std::filesystem::remove(place, ignored);
   return ready;
 }
 
-Result<Done> write_report(const std::string& folder, const std::vector<ReportFile>& files) {
-  if (Result<Done> ready = prepare_folder(folder); !ready) return ready;
+Result<Done> write_report(const std::string& folder, const std::vector<ReportFile>& files, const std::string& page) {
+  if (Result<Done> ready = prepare_folder(folder, page); !ready) return ready;
   for (const ReportFile& file : files)
     if (Result<Done> written = output::write_text_file((std::filesystem::path(folder) / file.name).string(), file.text);
         !written)

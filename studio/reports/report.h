@@ -72,15 +72,17 @@ struct ReportFile {
   std::string name, text;
 };
 
-/// Creates `folder` if necessary and checks that it can be written.
-Result<Done> prepare_folder(const std::string& folder);
+/// Creates `folder` if necessary and checks that it can be written. Errors: also files that a report would replace,
+/// where no report of this program, known by its first page, lies beside them.
+Result<Done> prepare_folder(const std::string& folder, const std::string& page = "report.html");
 
 /// Checks that prepare_folder() will do, and leaves no folder behind. Call it before the work to be reported, which may
 /// be refused.
-Result<Done> check_folder(const std::string& folder);
+Result<Done> check_folder(const std::string& folder, const std::string& page = "report.html");
 
 /// Writes each file under a temporary name, then renames it, so that no reader sees an incomplete file. Errors: those
 /// of output/files.h.
-Result<Done> write_report(const std::string& folder, const std::vector<ReportFile>& files);
+Result<Done> write_report(const std::string& folder, const std::vector<ReportFile>& files,
+                          const std::string& page = "report.html");
 
 }  // namespace ctpm::reports

@@ -53,6 +53,7 @@ class MotionReader {
   }
 
   bool read_header(std::string_view line) {
+    if (output::has_other_separators(line)) return add(1, output::kOtherSeparators, output::kSeparatorHint), false;
     const std::vector<output::CsvCell> cells = output::csv_cells(line);
     width_ = cells.size();
     for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -20,8 +20,11 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(JsonWords, EachMistakeIsNamedWhereItStands) {
+  EXPECT_EQ(error_of(std::string("SQLite format 3\0\x10", 17)),
+            "t.json:1:1: error: this is a recorded session, or another database, and no text");
+  EXPECT_EQ(error_of(std::string("MA\xa6\0\1", 5)), "t.json:1:1: error: this is no text");
   const std::pair<const char*, const char*> kMistakes[] = {
-      {"", "t.json:1:1: error: the text is empty (a scene begins with {)"},
+      {"", "t.json:1:1: error: the text is empty (it should begin with {)"},
       {"{\"a\": 1,\n}", "t.json:1:8: error: this comma is one too many: nothing follows it but } (remove it)"},
       {"[1, 2, ]", "t.json:1:6: error: this comma is one too many: nothing follows it but ] (remove it)"},
       {"{\"a\": 1\n \"b\": 2}", "t.json:2:2: error: a comma is missing before \""},

@@ -334,7 +334,13 @@ TEST(Measurements, SayAllMistakesWithTheirPlaces) {
     EXPECT_NE(rows.find(part), std::string::npos) << part << "\nin\n" << rows;
   EXPECT_NE(all("depth_mm,force_n\n1,1\n1,2\n2,2\n").find("a.csv:3:1: error: depth_mm: depth must rise"),
             std::string::npos);
-  EXPECT_NE(all("depth_mm,force_n\n1,1\n").find("has 1 rows, must have at least 3"), std::string::npos);
+  EXPECT_NE(all("depth_mm,force_n\n1,1\n").find("has 1 row, must have at least 3"), std::string::npos);
+  EXPECT_NE(all("time_s,depth_mm,force_n\n0,6,1.4\n1,6,1.3\n2,6,1.2\n").find("a.csv: error: is pressed at 0 s already"),
+            std::string::npos);
+  EXPECT_EQ(all("time_s,depth_mm,force_n\n0,0,0\n0.1,6,1.3\n2,6,1.2\n"), "");
+  EXPECT_EQ(all("depth_mm;force_n\n1,0;0,2\n"),
+            "a.csv:1:1: error: semicolons or tabs part the values (save it with commas between the values, and points "
+            "in the numbers)\n");
 }
 
 TEST(CalibrateProgram, MakesOfThePapersTableAMaterialThatAnImportTakes) {

@@ -2,6 +2,7 @@
 // half-written.
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -169,6 +170,16 @@ TEST_F(BadInput, ASessionThatDoesNotExistOrIsNone) {
   refuse({"recover", "letter.ctpm", "-o", "b.ctpm"}, {"letter.ctpm"});
 }
 
+TEST_F(BadInput, AFolderOrAPipeInPlaceOfASession) {
+  fs::create_directory(folder_.path() / "folder.ctpm");
+  ASSERT_EQ(::mkfifo((folder_.path() / "pipe.ctpm").c_str(), 0600), 0);
+  for (const char* none : {"folder.ctpm", "pipe.ctpm"}) {
+    for (const char* command : {"verify", "info", "replay"}) refuse({command, none}, {"it is not a regular file"});
+    refuse({"recover", none, "-o", "b.ctpm"}, {std::string(none) + ": error: is not a session file: it is not a"});
+    refuse({"compare", none, none}, {"it is not a regular file"});
+  }
+}
+
 TEST_F(BadInput, ASessionThatIsCutShort) {
   ASSERT_EQ(
       run_ctpm({"record", kShipped + "skin.json", "-o", "whole.ctpm", "--fast", "--duration-s", "1"}, folder_.path())
@@ -224,6 +235,21 @@ TEST_F(BadInput, ExportOptionsOutOfRange) {
          {"--view", "--cutaway: error: got 'y=deep'"});
   refuse({"preview", kShipped + "skin.json", "-o", "a.png", "--cutaway", "y=9999"},
          {"--cutaway: error: got 'y=9999', the organs lie between -"});
+}
+
+TEST_F(BadInput, EveryPlaceIsSaidOnceAndNumbersAsTheyWereGiven) {
+  ASSERT_EQ(
+      run_ctpm({"record", kShipped + "skin.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"}, folder_.path())
+          .code,
+      0);
+  const auto exported = run_ctpm({"export", "a.ctpm", "-o", "nodir/a.mp4"}, folder_.path());
+  EXPECT_EQ(exported.err, "nodir/a.mp4: error: the folder nodir does not exist (create it first)\n");
+  refuse({"replay", "a.ctpm", "--from-s", "9"}, {"--from-s: got 9, the session lasts 0.1 s"});
+  refuse({"preview", "none.json", "-o", "nodir/a.png", "--size", "10x"},
+         {"--size: error:", "nodir", "none.json: error:"});
+  refuse({"stability", "--case", "none", "-o", "a.ctpm/out"}, {"--case: error:", "a.ctpm/out: error: cannot be made"});
+  fs::create_directory(folder_.path() / "folder");
+  refuse({"anonymise", "a.ctpm", "-o", "b.ctpm", "--key", "folder"}, {"folder: error: is a folder"});
 }
 
 TEST_F(BadInput, ModuliRadiiSpacingsAndViscositiesThatCannotBeAreAllNamedWithTheirPlaces) {

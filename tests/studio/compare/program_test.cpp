@@ -140,6 +140,13 @@ TEST_F(Compare, NamesTheCommandThatShowsTheWorstMoment) {
   EXPECT_TRUE(fs::exists(folder_.path() / "worst.mp4"));
 }
 
+TEST_F(Compare, TheCommandThatShowsTheWorstMomentCanBeTypedWhateverTheFileIsCalled) {
+  fs::copy_file(hard_press_, folder_.path() / "Ana's press 1.ctpm");
+  const auto compared = compare(press_, "Ana's press 1.ctpm");
+  EXPECT_TRUE(holds(compared.out, "to see the worst: ctpm export 'Ana'\\''s press 1.ctpm' -o worst.mp4 "))
+      << compared.out;
+}
+
 TEST_F(Compare, ASessionThatGoesOnFromAnotherIsMeasuredWithAWarning) {
   const std::string script = kScenes + "/scripts/kidney-cut-expert.json";
   const auto recorded = run_ctpm({"record", "--continue", clumsy_cut_, "--at", "6", "--script", script, "-o", "on.ctpm",

@@ -147,6 +147,19 @@ TEST_F(DeviceSession, ADeviceThatComesBackGoesOnFromThePoseThatWasHeldNoFasterTh
   EXPECT_EQ(source_->fault(), "");
 }
 
+TEST_F(DeviceSession, PosesThatAreUsedBetweenFaultsAreNotSaidToBeHeld) {
+  hold(kHome, 100);
+  // 2 s in which every 50th message has no pose, and all others are followed.
+  for (int i = 0; i < 40; ++i) {
+    tell({kNan, 0, 0}), tick();
+    hold(kHome, 49);
+  }
+  hold(kHome, 200);
+  EXPECT_EQ(story(), "lost: pose is not finite; the pose is held\nback\n");
+  EXPECT_NEAR(events_.back().held, 40 * kTick, 1e-9);
+  EXPECT_EQ(events_.back().refused_samples, 40);
+}
+
 TEST_F(DeviceSession, WhatIsNotFiniteOrNoRotationIsNotBelieved) {
   hold(kHome, 100);
   for (const Vec3 bad : {Vec3{kNan, 0, 0}, Vec3{0, INFINITY, 0}}) tell(bad);

@@ -173,9 +173,17 @@ TEST(IgtlStream, PosesOfOtherDevicesAreSkippedWhereOneIsNamed) {
       transform_bytes({1, 0, 0}, 0, "Stylus") + transform_bytes({2, 0, 0}, 0, "Reference") + sensor_bytes({1});
   EXPECT_EQ(hear(bytes).reports.size(), 3u);
   const Heard heard = hear(bytes, 100, "Stylus");
-  ASSERT_EQ(heard.reports.size(), 2u);
+  ASSERT_EQ(heard.reports.size(), 3u);
   EXPECT_EQ(heard.reports[0].pose.position.x, 1e-3);
-  EXPECT_EQ(heard.reports[1].news, devices::DeviceNews::buttons);
+  EXPECT_EQ(heard.reports[1].news, devices::DeviceNews::other_name);
+  EXPECT_STREQ(heard.reports[1].name.data(), "Reference");
+  EXPECT_EQ(heard.reports[2].news, devices::DeviceNews::buttons);
+  // A name is told once, however many poses follow, and a name without an end of its own ends.
+  const std::string longest(20, 'x');
+  const Heard flooded =
+      hear(transform_bytes({1, 0, 0}, 0, longest) + transform_bytes({1, 0, 0}, 0, "Tip"), 7, "Stylus");
+  ASSERT_EQ(flooded.reports.size(), 1u);
+  EXPECT_EQ(flooded.reports[0].name.data(), longest);
 }
 
 TEST(IgtlStream, AWrongChecksumOrSizeCostsOneMessageAndNotTheNext) {

@@ -194,6 +194,32 @@ TEST_F(IgtlRecord, APortInUseAndANobodyAreToldAtOnceAndNothingIsWritten) {
           "--igtl-allow: error: name the addresses that may connect");
 }
 
+TEST_F(IgtlRecord, WhileAnotherDeviceThanTheNamedOneSendsItsNameIsSaid) {
+  RunningProgram program(listening({"--igtl-name", "Stylus"}), folder_.path());
+  const int port = port_of(program);
+  ASSERT_GT(port, 0);
+  IgtlPeer peer = IgtlPeer::connect(port);
+  EXPECT_TRUE(program.wait_until([&] {
+    (void)peer.send(transform_bytes(kHome, 0, "Probe"));
+    return holds(testing::slurp(folder_.path() / ".stderr"),
+                 "poses of 'Probe' come, and another device is asked for\n");
+  }));
+  stay(peer);
+  program.interrupt();
+  EXPECT_EQ(program.outcome().code, 0);
+}
+
+TEST_F(IgtlRecord, OptionsOfADeviceAreRefusedWhereNoneIsAskedFor) {
+  const ProgramOutcome outcome = run_ctpm({"record", "block.json", "-o", "a.ctpm", "--fast", "--device-tool", "ball",
+                                           "--igtl-name", "Stylus", "--device-second-tip", "0", "0", "1"},
+                                          folder_.path());
+  EXPECT_EQ(outcome.code, 2) << outcome.out;
+  for (const char* flag : {"--device-tool", "--igtl-name", "--device-second-tip"})
+    EXPECT_TRUE(holds(outcome.err, std::string(flag) + ": error: is of a device, and none is asked for"))
+        << outcome.err;
+  EXPECT_EQ(folder_.list(), "block.json");
+}
+
 TEST_F(IgtlRecord, WhatIsWrongWithADevicesOptionsIsToldAtOnce) {
   const ProgramOutcome outcome = run_ctpm(
       listening({"--igtl", "nowhere", "--fast", "--device-button", "40=ball", "--device-scale", "0",

@@ -88,6 +88,9 @@ TEST(ReadMotion, AHeaderThatDoesNotFitIsRefusedWithEverythingThatIsWrong) {
   EXPECT_EQ(errors_of(""), "m.csv: error: is empty (the first row names the columns: time_s, tool_x_mm ...)\n");
   EXPECT_EQ(errors_of("time_s,tool_x_mm,tool_y_mm,tool_z_mm\n"),
             "m.csv:2:1: error: there is no row after the names of the columns\n");
+  EXPECT_EQ(errors_of("time_s;tool_x_mm;tool_y_mm;tool_z_mm\n0;1;2;3\n"),
+            "m.csv:1:1: error: semicolons or tabs part the values (save it with commas between the values, and points "
+            "in the numbers)\n");
 }
 
 TEST(ReadMotion, AnOrientationAButtonSetOrAToolThatIsNoneIsRefusedWhereItStands) {

@@ -283,6 +283,14 @@ TEST_F(SweepProgram, ComparesAndExportsEachSession) {
   EXPECT_TRUE(fs::exists(folder() / "films" / "tasks" / id / "small.mp4"));
 }
 
+TEST_F(SweepProgram, WrongWordsOfACommandAreSaidAndNotOnlyThatItHasHelp) {
+  testing::write(folder() / "a.ctpm", "x");
+  ASSERT_EQ(run({"plan", "--each", "verify --wings", "-o", "out", "a.ctpm"}).code, 0);
+  EXPECT_EQ(run({"run", "out"}).code, 1);
+  EXPECT_NE(status().find("exit code 2: The following argument was not expected: --wings"), std::string::npos)
+      << status();
+}
+
 TEST_F(SweepProgram, RefusesCommandsThatReadNoSession) {
   testing::write(folder() / "a.ctpm", "x");
   const ProgramOutcome record = run({"plan", "--each", "record", "-o", "out", "a.ctpm"});
@@ -291,7 +299,14 @@ TEST_F(SweepProgram, RefusesCommandsThatReadNoSession) {
   const ProgramOutcome twice = run({"plan", "--each", "verify", "-o", "out", "a.ctpm", "a.ctpm", "none.ctpm"});
   EXPECT_EQ(twice.code, 2);
   EXPECT_NE(twice.err.find("a.ctpm: error: is there twice"), std::string::npos) << twice.err;
-  EXPECT_NE(twice.err.find("none.ctpm: error: "), std::string::npos) << twice.err;
+  EXPECT_NE(twice.err.find("none.ctpm: error: does not exist"), std::string::npos) << twice.err;
+  const ProgramOutcome empty = run({"plan", "--each", "", "-o", "out", "a.ctpm"});
+  EXPECT_EQ(empty.code, 2);
+  EXPECT_NE(empty.err.find("--each: error: needs a command"), std::string::npos) << empty.err;
+  fs::create_directory(folder() / "sessions");
+  const ProgramOutcome of_folder = run({"plan", "--each", "verify", "-o", "out", "sessions"});
+  EXPECT_EQ(of_folder.code, 2);
+  EXPECT_NE(of_folder.err.find("sessions: error: is a folder, not a file"), std::string::npos) << of_folder.err;
   EXPECT_FALSE(fs::exists(out()));
 }
 
