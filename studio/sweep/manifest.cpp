@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "studio/output/files.h"
 #include "studio/output/json_writer.h"
@@ -59,7 +60,10 @@ Result<Done> write_plan(const Plan& plan, const std::string& folder) {
 Result<Plan> read_plan(const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / "manifest.json").string();
   const Result<std::string> text = output::read_text_file(path);
-  if (!text) return Error{folder, "holds no plan", "ctpm sweep plan writes one"};
+  std::error_code ignored;
+  if (!text)
+    return Error{folder, std::filesystem::exists(folder, ignored) ? "holds no plan" : "does not exist",
+                 "ctpm sweep plan writes one"};
   const nlohmann::json json = nlohmann::json::parse(*text, nullptr, false);
   try {
     if (json.at("format") != kFormat || json.at("version") != 1) return Error{path, "is no plan of this program", ""};

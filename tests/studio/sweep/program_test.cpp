@@ -131,6 +131,17 @@ TEST_F(SweepProgram, SaysAllMistakesWhereTheyAreAndWritesNothing) {
   EXPECT_FALSE(fs::exists(out()));
 }
 
+TEST_F(SweepProgram, AFolderThatIsMissingIsToldFromOneWithoutAPlan) {
+  fs::create_directory(folder() / "empty");
+  for (const char* verb : {"run", "status", "collect", "retry"}) {
+    const auto missing = run({verb, "nowhere"}), empty = run({verb, "empty"});
+    EXPECT_EQ(missing.code, 2);
+    EXPECT_NE(missing.err.find("nowhere: error: does not exist"), std::string::npos) << verb << ": " << missing.err;
+    EXPECT_EQ(empty.code, 2);
+    EXPECT_NE(empty.err.find("empty: error: holds no plan"), std::string::npos) << verb << ": " << empty.err;
+  }
+}
+
 TEST_F(SweepProgram, GoesOnAfterEveryKill) {
   testing::write_rig(folder());
   testing::write_sweep(folder(), R"("method": "latin-hypercube", "samples": 60, "vary": [
