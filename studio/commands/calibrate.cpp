@@ -32,10 +32,8 @@ Result<std::vector<calibrate::Measurement>> read_all(const std::vector<std::stri
     const Result<std::string> text = output::read_text_file(file);
     const Result<std::vector<calibrate::Measurement>> read =
         text ? calibrate::read_measurements(*text, file) : text.errors();
-    if (read)
-      all.insert(all.end(), read->begin(), read->end());
-    else
-      errors.insert(errors.end(), read.errors().begin(), read.errors().end());
+    if (read) all.insert(all.end(), read->begin(), read->end());
+    add_errors(read, errors);
   }
   if (!errors.empty()) return errors;
   return all;
@@ -76,17 +74,16 @@ std::optional<loading::LoadedScene> block_of(const CalibrateArguments& arguments
   Result<loading::LoadedScene> block =
       calibrate::make_block(kScenes, start_of(arguments), {size[0], size[1], size[2]}, arguments.sphere_mm);
   if (block) return std::move(*block);
-  errors.insert(errors.end(), block.errors().begin(), block.errors().end());
+  add_errors(block, errors);
   return {};
 }
 
 int run_calibrate(const CalibrateArguments& arguments) {
   const Result<std::vector<calibrate::Measurement>> measurements = read_all(arguments.files);
   Errors errors;
-  if (!measurements) errors = measurements.errors();
+  add_errors(measurements, errors);
   const std::optional<loading::LoadedScene> block = block_of(arguments, errors);
-  if (const Result<Done> folder = reports::check_folder(arguments.folder); !folder)
-    errors.insert(errors.end(), folder.errors().begin(), folder.errors().end());
+  add_errors(reports::check_folder(arguments.folder), errors);
   if (!errors.empty()) return print_errors(errors);
   const Result<loading::LoadedScene> rig = loading::load_whole_scene(kScenes + "/paper/rig-liver.json");
   if (!rig) return print_errors(rig.errors());

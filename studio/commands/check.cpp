@@ -40,9 +40,9 @@ std::string counted_warnings(std::size_t count) {
 bool is_good_course(const std::string& path, const scenes::LoadOptions& load) {
   const Result<scenes::CourseSpec> course = scenes::load_course(path, compare::measure_keys());
   if (!course) return print_errors(course.errors()), false;
-  const Result<Done> experts = cohort::check_experts(*course);
   const cohort::SceneFindings scenes = cohort::find_other_scenes(*course, load);
-  Errors errors = experts ? Errors{} : experts.errors();
+  Errors errors;
+  add_errors(cohort::check_experts(*course), errors);
   errors.insert(errors.end(), scenes.errors.begin(), scenes.errors.end());
   if (!errors.empty()) return print_errors(errors), false;
   print_warnings(scenes.warnings);

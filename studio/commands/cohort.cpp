@@ -63,9 +63,9 @@ void print_cohort(const cohort::Cohort& cohort) {
 
 int run_cohort(const CohortArguments& arguments) {
   const Result<scenes::CourseSpec> course = course_of(arguments);
-  const Result<Done> folder = reports::check_folder(arguments.folder, cohort::kFirstPage);
-  Errors errors = course ? Errors() : course.errors();
-  if (!folder) errors.insert(errors.end(), folder.errors().begin(), folder.errors().end());
+  Errors errors;
+  add_errors(course, errors);
+  add_errors(reports::check_folder(arguments.folder, cohort::kFirstPage), errors);
   if (!errors.empty()) return print_errors(errors);
   cohort::CohortOptions options;
   options.verify = arguments.verify;

@@ -53,12 +53,11 @@ Result<compare::ComparedFiles> compare_opened(compare::OpenedFiles files, const 
 
 int run_compare(const CompareArguments& arguments) {
   Result<compare::OpenedFiles> opened = compare::open_files(arguments.expert, arguments.trainee);
-  Errors errors = opened ? Errors() : opened.errors();
+  Errors errors;
+  add_errors(opened, errors);
   if (arguments.has_force_limit && !(arguments.force_limit_n > 0))
     errors.push_back({"--force-limit", "must be above 0 N", ""});
-  if (!arguments.folder.empty())
-    if (const Result<Done> folder = reports::check_folder(arguments.folder); !folder)
-      errors.insert(errors.end(), folder.errors().begin(), folder.errors().end());
+  if (!arguments.folder.empty()) add_errors(reports::check_folder(arguments.folder), errors);
   if (!errors.empty()) return print_errors(errors);
   warn_of_physics(opened->expert), warn_of_physics(opened->trainee);
   Result<compare::ComparedFiles> files = compare_opened(*std::move(opened), arguments);

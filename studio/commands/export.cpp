@@ -167,8 +167,7 @@ int run_many(const ExportArguments& arguments) {
   }
   std::error_code failed;
   if (std::filesystem::exists(folder, failed))
-    if (const Result<Done> is_new = output::check_new(table_path, arguments.options.overwrite); !is_new)
-      errors.insert(errors.end(), is_new.errors().begin(), is_new.errors().end());
+    add_errors(output::check_new(table_path, arguments.options.overwrite), errors);
   if (!errors.empty()) return print_errors(errors);
   std::filesystem::create_directories(folder, failed);
   if (failed) return print_errors({{arguments.output, "cannot be made: " + failed.message(), ""}});

@@ -112,9 +112,7 @@ Errors complete(ImportArguments& a) {
     else
       errors.push_back({"--anchor", anchor.errors().front().message, ""});
   }
-  if (!a.report.empty())
-    if (const Result<Done> writable = output::check_new(a.report, r.overwrite); !writable)
-      errors.insert(errors.end(), writable.errors().begin(), writable.errors().end());
+  if (!a.report.empty()) add_errors(output::check_new(a.report, r.overwrite), errors);
   return errors;
 }
 

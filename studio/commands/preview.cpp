@@ -45,12 +45,11 @@ Result<std::optional<scenes::Script>> script_of(const PreviewArguments& argument
 
 int run_preview(PreviewArguments arguments) {
   const Result<render::PictureSize> size = render::parse_picture_size(arguments.size);
-  Errors errors = size ? Errors() : size.errors();
-  const auto add = [&](const Errors& more) { errors.insert(errors.end(), more.begin(), more.end()); };
-  if (const Result<Done> writable = output::check_new(arguments.output, arguments.overwrite); !writable)
-    add(writable.errors());
+  Errors errors;
+  add_errors(size, errors);
+  add_errors(output::check_new(arguments.output, arguments.overwrite), errors);
   const Result<loading::LoadedScene> scene = loading::load_whole_scene(arguments.scene, arguments.load);
-  if (!scene) add(scene.errors());
+  add_errors(scene, errors);
   if (!errors.empty()) return print_errors(errors);
   print_warnings(scene->scene.warnings);
   // With --spheres the surface stands on the left half and the layered spheres on the right.

@@ -54,9 +54,9 @@ void print_runs(const std::vector<stability::StabilityRow>& rows) {
 
 int run_stability_command(const StabilityArguments& arguments) {
   const Result<std::vector<stability::StabilityCase>> cases = chosen_cases(arguments);
-  Errors errors = cases ? Errors() : cases.errors();
-  if (const Result<Done> ready = reports::check_folder(arguments.folder); !ready)
-    errors.insert(errors.end(), ready.errors().begin(), ready.errors().end());
+  Errors errors;
+  add_errors(cases, errors);
+  add_errors(reports::check_folder(arguments.folder), errors);
   if (!errors.empty()) return print_errors(errors);
   const std::vector<stability::StabilityRow> rows = [&] {
     ProgressLine progress("running the stability cases");
