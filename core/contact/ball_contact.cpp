@@ -29,7 +29,7 @@ constexpr double kOpen = 0.1;
 
 /// Triangles are looked for within so many radii of where they may be touched (our choice): a wider margin looks less
 /// often, at more triangles.
-constexpr double kMargin = 0.1;
+constexpr double kMargin = 0.3;
 
 /// Pressure is gathered within this part of a spacing and of the smallest ball's radius (our choice).
 constexpr double kGatherRadius = 0.125, kGatherShare = 0.25;

@@ -1,8 +1,19 @@
 #include "core/contact/near_triangles.h"
 
 #include <cmath>
+#include <limits>
 
 namespace ctpm::contact {
+namespace {
+
+/// The next look begins when this part of the margin is left (our choice).
+constexpr double kLeft = 0.5;
+
+/// So many triangles are visited in a round, where a group that is left out counts as kGroupCosts (our choice: a
+/// tenth of a millisecond).
+constexpr std::size_t kMostAtOnce = 384, kGroupCosts = 4;
+
+}  // namespace
 
 Reach Reach::grown(double by) const {
   Reach wider = *this;
@@ -20,44 +31,84 @@ bool Reach::contains(const Reach& other) const {
 
 NearTriangles::NearTriangles(const std::vector<BallPart>& whole, std::int32_t slots, CutSurfaces& cuts,
                              std::int32_t kind)
-    : cuts_(cuts), kind_(kind), whole_(whole.size()), whole_slots_(slots), parts_(whole), slots_(slots) {
+    : cuts_(cuts), kind_(kind), whole_(whole.size()), whole_slots_(slots) {
   std::size_t triangles = 0;
   for (const BallPart& part : whole) triangles += part.surface->triangles().size();
-  found_.reserve(triangles);
+  for (Look* look : {&used_, &next_}) look->parts = whole, look->slots = slots, look->found.reserve(triangles);
 }
 
-/// Whether nothing that `reach` may meet is missing.
-bool NearTriangles::holds(const Reach& reach, const Vec3Array& position) const {
-  if (!has_looked_ || version_ != cuts_.version() || position_.size() != position.size()) return false;
-  double farthest_squared = 0;
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    const double x = position.x[i] - position_.x[i], y = position.y[i] - position_.y[i],
-                 z = position.z[i] - position_.z[i];
-    farthest_squared = std::max(x * x + y * y + z * z, farthest_squared);
+/// How far the farthest sphere has moved since the look began [m].
+double NearTriangles::Look::farthest(const Vec3Array& now) const {
+  double squared = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const double x = now.x[i] - position.x[i], y = now.y[i] - position.y[i], z = now.z[i] - position.z[i];
+    squared = std::max(x * x + y * y + z * z, squared);
   }
-  return looked_.grown(margin_).contains(reach.grown(stretch_ * std::sqrt(farthest_squared)));
+  return std::sqrt(squared);
+}
+
+/// Whether nothing that `now` may meet is missing, after the farthest sphere has `moved` so far since the look began
+/// [m]. What was left out in a later round was farther away then by up to the drift.
+bool NearTriangles::Look::holds(const Reach& now, double moved) const {
+  return reach.contains(now.grown(stretch * (moved + drift)));
 }
 
 void NearTriangles::find(const Reach& reach, double margin, const Vec3Array& position) {
-  if (!holds(reach, position)) {
-    margin_ = margin, looked_ = reach, version_ = cuts_.version(), position_ = position, has_looked_ = true;
-    return look(reach.grown(margin));
+  const auto may_use = [&](Look& look) {
+    return look.has_begun && look.version == cuts_.version() && look.position.size() == position.size();
+  };
+  const Reach wider = reach.grown(margin);
+  if (!may_use(next_)) next_.has_begun = false;
+  const double moved = may_use(used_) ? used_.farthest(position) : 0;
+  if (may_use(used_) && used_.holds(reach, moved)) {
+    begin_round(used_);
+    if (!next_.has_begun && !used_.holds(reach.grown(kLeft * margin), moved)) begin(next_, wider, position);
+    if (!next_.has_begun) return;
+    begin_round(next_);
+    go_on(next_, position, kMostAtOnce);
+    if (!next_.is_done()) return;
+  } else if (next_.has_begun) {
+    begin_round(next_);
+    go_on(next_, position, std::numeric_limits<std::size_t>::max());
   }
-  for (std::size_t part = whole_; part < parts_.size(); ++part) cuts_.begin(*parts_[part].patch);
+  if (!next_.has_begun || !next_.holds(reach, next_.farthest(position))) {
+    begin(next_, wider, position);
+    go_on(next_, position, std::numeric_limits<std::size_t>::max());
+  }
+  std::swap(used_, next_), next_.has_begun = false;
 }
 
-void NearTriangles::look(const Reach& reach) {
-  parts_.resize(whole_), found_.clear(), slots_ = whole_slots_;
-  stretch_ = cuts_.any() ? cutbody::CutPatches::kStretch : 1;
-  for (const BallPart& part : parts_) stretch_ = std::max(stretch_, part.surface->stretch());
+void NearTriangles::begin(Look& look, const Reach& reach, const Vec3Array& position) {
+  look.has_begun = true, look.version = cuts_.version(), look.reach = reach, look.position = position;
+  look.parts.resize(whole_), look.found.clear(), look.slots = whole_slots_;
+  look.part = look.group = 0, look.drift = 0;
+  look.stretch = cuts_.any() ? cutbody::CutPatches::kStretch : 1;
+  for (const BallPart& part : look.parts) look.stretch = std::max(look.stretch, part.surface->stretch());
   cuts_.near(reach, [&](cutbody::CutPatch& patch) {
-    parts_.push_back({slots_, cuts_.first_point(kind_, patch), &patch.body.surface, &patch.gathering, &patch});
-    slots_ += parts_.back().slots();
+    look.parts.push_back({look.slots, cuts_.first_point(kind_, patch), &patch.body.surface, &patch.gathering, &patch});
+    look.slots += look.parts.back().slots();
   });
-  for (std::size_t part = 0; part < parts_.size(); ++part)
-    parts_[part].surface->near(reach, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
-      if (reach.meets(Box(corners[0], corners[1], corners[2]))) found_.push_back({std::int32_t(part), &triangle});
-    });
+}
+
+/// Visits groups until their triangles are `most` or all groups were visited.
+void NearTriangles::go_on(Look& look, const Vec3Array& position, std::size_t most) {
+  look.drift = std::max(look.drift, look.farthest(position));
+  std::size_t seen = 0;
+  for (; look.part < look.parts.size() && seen < most; ++look.part, look.group = 0) {
+    surface::NearSurface& surface = *look.parts[look.part].surface;
+    for (; look.group < surface.groups().size() && seen < most; ++look.group, seen += kGroupCosts)
+      surface.near(look.reach, look.group, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
+        ++seen;
+        if (look.reach.meets(Box(corners[0], corners[1], corners[2])))
+          look.found.push_back({std::int32_t(look.part), &triangle});
+      });
+    if (look.group < surface.groups().size()) return;
+  }
+}
+
+/// Begins the round for the patches of cuts that a look found in an earlier one.
+void NearTriangles::begin_round(const Look& look) {
+  for (std::size_t part = whole_; part < look.parts.size(); ++part) cuts_.begin(*look.parts[part].patch);
 }
 
 }  // namespace ctpm::contact

@@ -48,7 +48,8 @@ struct BallPart {
 
 /// The triangles of organs and of their cuts that a ball may touch. They are looked for with a margin, and again only
 /// when ball and tissue may have come farther than that (as in the neighbour lists of Verlet, Phys. Rev. 159, 98,
-/// 1967). Only what cannot be touched is left out: when they were looked for changes no result.
+/// 1967). Before the margin is used up, the next look begins and goes on through several rounds, so that no tick bears
+/// it whole. Only what cannot be touched is left out: when they were looked for changes no result.
 class NearTriangles {
  public:
   struct Found {
@@ -64,28 +65,38 @@ class NearTriangles {
   /// `position` [m], in which those of whole organs and of the cuts already are.
   void find(const Reach& reach, double margin, const Vec3Array& position);
 
-  const std::vector<BallPart>& parts() const { return parts_; }   ///< those of whole organs first
-  const std::vector<Found>& triangles() const { return found_; }  ///< by part, in the order of NearSurface::near()
-  std::int32_t slots() const { return slots_; }
+  const std::vector<BallPart>& parts() const { return used_.parts; }   ///< those of whole organs first
+  const std::vector<Found>& triangles() const { return used_.found; }  ///< by part, in the order of NearSurface::near()
+  std::int32_t slots() const { return used_.slots; }
 
  private:
-  bool holds(const Reach& reach, const Vec3Array& position) const;
-  void look(const Reach& reach);
+  /// A look, which is done once all groups of all parts were visited.
+  struct Look {
+    bool has_begun = false;
+    std::uint32_t version = 0;
+    Reach reach{Vec3{}, 0};  ///< with the margin
+    Vec3Array position;      ///< in the round in which it began [m]
+    double stretch = 1;      ///< a vertex moves at most so many times as far as the farthest sphere
+    double drift = 0;        ///< of the farthest sphere, until the last group was visited [m]
+    std::vector<BallPart> parts;
+    std::vector<Found> found;
+    std::int32_t slots = 0;
+    std::size_t part = 0, group = 0;  ///< to be visited next
+
+    bool is_done() const { return part == parts.size(); }
+    double farthest(const Vec3Array& now) const;
+    bool holds(const Reach& now, double moved) const;
+  };
+
+  void begin(Look& look, const Reach& reach, const Vec3Array& position);
+  void go_on(Look& look, const Vec3Array& position, std::size_t most);
+  void begin_round(const Look& look);
 
   CutSurfaces& cuts_;
   const std::int32_t kind_;
   const std::size_t whole_;
   const std::int32_t whole_slots_;
-  std::vector<BallPart> parts_;
-  std::vector<Found> found_;
-  std::int32_t slots_;
-  /// Of the last look.
-  bool has_looked_ = false;
-  std::uint32_t version_ = 0;
-  Reach looked_{Vec3{}, 0};
-  double margin_ = 0;
-  Vec3Array position_;
-  double stretch_ = 1;  ///< a vertex moves at most so many times as far as the farthest sphere
+  Look used_, next_;
 };
 
 }  // namespace ctpm::contact

@@ -100,6 +100,9 @@ class NearSurface {
   /// corners, in a fixed order. `region`: anything with `meets(Box)`.
   template <class Region, class Visit>
   void near(const Region& region, Visit&& visit);
+  /// The same for one of the groups, of which near() visits one after another.
+  template <class Region, class Visit>
+  void near(const Region& region, std::size_t group, Visit&& visit);
 
  private:
   /// Where a patch or group is.
@@ -157,19 +160,20 @@ class NearSurface {
 
 template <class Region, class Visit>
 void NearSurface::near(const Region& region, Visit&& visit) {
-  if (groups_.empty()) return;
-  for (const Bound& group : groups_) {
-    if (!region.meets(group.rest.moved(displacements())) ||
-        !region.meets(place_of(group, group_places_[std::size_t(&group - groups_.data())])))
-      continue;
-    for (Index p = group.first; p < group.last; ++p) {
-      const Bound& patch = patches_[std::size_t(p)];
-      if (!region.meets(place_of(patch, patch_places_[std::size_t(p)]))) continue;
-      for (Index t = patch.first; t < patch.last; ++t) {
-        const Triangle& triangle = triangles_[std::size_t(t)];
-        const Vec3 corners[3] = {place(triangle.corner[0]), place(triangle.corner[1]), place(triangle.corner[2])};
-        visit(triangle, corners);
-      }
+  for (std::size_t group = 0; group < groups_.size(); ++group) near(region, group, visit);
+}
+
+template <class Region, class Visit>
+void NearSurface::near(const Region& region, std::size_t group, Visit&& visit) {
+  const Bound& bound = groups_[group];
+  if (!region.meets(bound.rest.moved(displacements())) || !region.meets(place_of(bound, group_places_[group]))) return;
+  for (Index p = bound.first; p < bound.last; ++p) {
+    const Bound& patch = patches_[std::size_t(p)];
+    if (!region.meets(place_of(patch, patch_places_[std::size_t(p)]))) continue;
+    for (Index t = patch.first; t < patch.last; ++t) {
+      const Triangle& triangle = triangles_[std::size_t(t)];
+      const Vec3 corners[3] = {place(triangle.corner[0]), place(triangle.corner[1]), place(triangle.corner[2])};
+      visit(triangle, corners);
     }
   }
 }

@@ -1,0 +1,113 @@
+// What NearTriangles keeps from tick to tick is all that one look at the present tick finds, in the same order.
+
+#include "core/contact/near_triangles.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "tests/core/cut_blocks.h"
+
+namespace ctpm {
+namespace {
+
+using contact::BallPart, contact::NearTriangles, contact::Reach;
+
+constexpr double kRadius = 0.008, kMargin = 0.3 * kRadius;  // [m]
+constexpr double kTop = 0.036;                              // of the block [m]
+
+/// A triangle: the block of the grid that its patch is in (-1: it is of the whole surface), the piece, and its corners.
+using Seen = std::array<std::int32_t, 5>;
+
+std::vector<Seen> touching(const NearTriangles& near, const Reach& reach) {
+  std::vector<Seen> seen;
+  for (const auto& [part, triangle] : near.triangles()) {
+    const BallPart& of = near.parts()[std::size_t(part)];
+    const auto place = [&](int c) { return of.surface->place(triangle->corner[c]); };
+    if (!reach.meets(Box(place(0), place(1), place(2)))) continue;
+    const bool is_whole = of.patch == nullptr;
+    seen.push_back({is_whole ? -1 : of.patch->block, is_whole ? -1 : of.patch->piece, triangle->corner[0],
+                    triangle->corner[1], triangle->corner[2]});
+  }
+  return seen;
+}
+
+/// A ball's way through a block whose spheres swing; how often it jumped and what was touched is for the test to know.
+struct Way {
+  const Model& model;
+  State state;
+  Vec3Array rest;
+
+  explicit Way(const Model& m, State first) : model(m), state(std::move(first)), rest(state.position) {}
+
+  /// Where the ball is in a tick; the spheres are moved on.
+  Reach at(int tick) {
+    const double phase = 0.05 * tick;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      const Vec3 p = rest[i];
+      const double swing = 2e-3 * std::sin(phase + 60 * p.x) * p.z / kTop;
+      state.position.set(i, p + Vec3{swing, 0.5 * swing, -std::abs(swing)});
+    }
+    const bool jumps = tick % 97 == 96;
+    Reach reach({0.02 * std::sin(0.6 * phase) + (jumps ? 0.01 : 0.0), 0.02 * std::cos(0.41 * phase), kTop}, kRadius);
+    // What was touched before reaches farther, and comes and goes at once.
+    if (tick % 31 < 15) reach.distance = std::max(reach.distance, reach.add(reach.centre + Vec3{0.011, 0, -0.004}));
+    return reach;
+  }
+};
+
+void expect_nothing_left_out(const Model& model, State first, bool is_cut) {
+  contact::CutSurfaces cuts(model);
+  cuts.prepare();
+  surface::NearSurface kept(model, 0, 1), anew(model, 0, 1);
+  surface::Gathering gathering;
+  gathering.add(model.surfaces[0], 0.001);
+  const auto slots = std::int32_t(model.surfaces[0].vertex.size());
+  NearTriangles near({{0, 0, &kept, &gathering}}, slots, cuts, 0);
+  Way way(model, std::move(first));
+  std::size_t most_patches = 0, most_seen = 0;
+  for (int tick = 0; tick < 1200; ++tick) {
+    const Reach reach = way.at(tick);
+    const State& state = way.state;
+    cuts.begin_tick(state, false), cuts.begin(state.position);
+    kept.begin(state.position), anew.begin(state.position);
+    (void)cuts.wait_near(reach.box, state, kept);
+    near.find(reach, kMargin, state.position);
+    const std::vector<Seen> seen = touching(near, reach);
+    most_patches = std::max(most_patches, near.parts().size() - 1), most_seen = std::max(most_seen, seen.size());
+    NearTriangles once({{0, 0, &anew, &gathering}}, slots, cuts, 0);
+    once.find(reach, 0, state.position);
+    ASSERT_EQ(seen, touching(once, reach)) << "tick " << tick;
+    std::size_t own = 0;
+    for (const auto& t : model.surfaces[0].triangle) {
+      const auto place = [&](std::size_t c) { return anew.place(t[c]); };
+      own += reach.meets(Box(place(0), place(1), place(2)));
+    }
+    ASSERT_EQ(std::count_if(seen.begin(), seen.end(), [](const Seen& s) { return s[0] < 0; }), std::ptrdiff_t(own));
+  }
+  EXPECT_GT(most_seen, 50u);
+  EXPECT_EQ(most_patches > 0, is_cut);
+}
+
+TEST(NearTriangles, LeaveOutNothingThatABallMayTouchWhileItMoves) {
+  const Model model = testing::block_to_cut(6, 6, 4, kRadius);
+  expect_nothing_left_out(model, rest_state(model), false);
+}
+
+TEST(NearTriangles, LeaveOutNothingOfACutThatABallMayTouchWhileItMoves) {
+  const Model model = testing::block_to_cut(6, 6, 4, kRadius);
+  State state = rest_state(model);
+  testing::cut_along(
+      model,
+      [](double t) {
+        const double y = -0.06 + 0.12 * t;
+        return testing::straight_front({0, y, 0.012}, {0, y, 0.06});
+      },
+      state);
+  expect_nothing_left_out(model, std::move(state), true);
+}
+
+}  // namespace
+}  // namespace ctpm
