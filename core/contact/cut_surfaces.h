@@ -81,6 +81,10 @@ class CutSurfaces {
   void near(std::size_t organ, const Region& region, Visit&& visit) {
     if (is_cut_ && organs_[organ]) organs_[organ]->near(region, visit);
   }
+  /// The patches of an organ; null: nothing of it is cut that is touched.
+  cutbody::CutPatches* patches(std::size_t organ) {
+    return is_cut_ && organs_[organ] && organs_[organ]->is_cut() ? &*organs_[organ] : nullptr;
+  }
   /// Begins the round for a patch that near() visited before: what is cut has not changed since.
   void begin(const cutbody::CutPatch& patch) { organs_[std::size_t(patch.body.organ)]->begin(patch); }
   /// The patch that a point of a cut belongs to; null: it is not there any more.

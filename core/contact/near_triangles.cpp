@@ -1,7 +1,9 @@
 #include "core/contact/near_triangles.h"
 
-#include <cmath>
 #include <limits>
+#include <utility>
+
+#include "core/contact/moved.h"
 
 namespace ctpm::contact {
 namespace {
@@ -37,16 +39,6 @@ NearTriangles::NearTriangles(const std::vector<BallPart>& whole, std::int32_t sl
   for (Look* look : {&used_, &next_}) look->parts = whole, look->slots = slots, look->found.reserve(triangles);
 }
 
-/// How far the farthest sphere has moved since the look began [m].
-double NearTriangles::Look::farthest(const Vec3Array& now) const {
-  double squared = 0;
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    const double x = now.x[i] - position.x[i], y = now.y[i] - position.y[i], z = now.z[i] - position.z[i];
-    squared = std::max(x * x + y * y + z * z, squared);
-  }
-  return std::sqrt(squared);
-}
-
 /// Whether nothing that `now` may meet is missing, after the farthest sphere has `moved` so far since the look began
 /// [m]. What was left out in a later round was farther away then by up to the drift.
 bool NearTriangles::Look::holds(const Reach& now, double moved) const {
@@ -59,7 +51,7 @@ void NearTriangles::find(const Reach& reach, double margin, const Vec3Array& pos
   };
   const Reach wider = reach.grown(margin);
   if (!may_use(next_)) next_.has_begun = false;
-  const double moved = may_use(used_) ? used_.farthest(position) : 0;
+  const double moved = may_use(used_) ? farthest_moved(used_.position, position) : 0;
   if (may_use(used_) && used_.holds(reach, moved)) {
     begin_round(used_);
     if (!next_.has_begun && !used_.holds(reach.grown(kLeft * margin), moved)) begin(next_, wider, position);
@@ -71,7 +63,7 @@ void NearTriangles::find(const Reach& reach, double margin, const Vec3Array& pos
     begin_round(next_);
     go_on(next_, position, std::numeric_limits<std::size_t>::max());
   }
-  if (!next_.has_begun || !next_.holds(reach, next_.farthest(position))) {
+  if (!next_.has_begun || !next_.holds(reach, farthest_moved(next_.position, position))) {
     begin(next_, wider, position);
     go_on(next_, position, std::numeric_limits<std::size_t>::max());
   }
@@ -92,14 +84,16 @@ void NearTriangles::begin(Look& look, const Reach& reach, const Vec3Array& posit
 
 /// Visits groups until their triangles are `most` or all groups were visited.
 void NearTriangles::go_on(Look& look, const Vec3Array& position, std::size_t most) {
-  look.drift = std::max(look.drift, look.farthest(position));
+  look.drift = std::max(look.drift, farthest_moved(look.position, position));
   std::size_t seen = 0;
   for (; look.part < look.parts.size() && seen < most; ++look.part, look.group = 0) {
     surface::NearSurface& surface = *look.parts[look.part].surface;
     for (; look.group < surface.groups().size() && seen < most; ++look.group, seen += kGroupCosts)
       surface.near(look.reach, look.group, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
         ++seen;
-        if (look.reach.meets(Box(corners[0], corners[1], corners[2])))
+        double turns = 0;
+        for (const std::int32_t corner : triangle.corner) turns = std::max(turns, 2 * surface.offset_size(corner));
+        if (look.reach.meets(Box(corners[0], corners[1], corners[2]).grown(turns)))
           look.found.push_back({std::int32_t(look.part), &triangle});
       });
     if (look.group < surface.groups().size()) return;

@@ -84,7 +84,6 @@ class NearTriangles {
     std::size_t part = 0, group = 0;  ///< to be visited next
 
     bool is_done() const { return part == parts.size(); }
-    double farthest(const Vec3Array& now) const;
     bool holds(const Reach& now, double moved) const;
   };
 

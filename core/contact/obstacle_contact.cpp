@@ -1,7 +1,7 @@
 #include "core/contact/obstacle_contact.h"
 
 #include <algorithm>
-#include <utility>
+#include <span>
 
 #include "core/contact/contact_law.h"
 
@@ -10,8 +10,9 @@ ObstacleContact::ObstacleContact(const Model& model, std::vector<surface::Body>&
     : model_(model), bodies_(bodies), cuts_(cuts), press_(model) {
   if (model.obstacles.empty()) return;
   for (const Obstacle& obstacle : model.obstacles) shapes_.emplace_back(obstacle);
+  for (const surface::ObstacleShape& shape : shapes_)
+    for (surface::Body& body : bodies) near_.emplace_back(model, body, shape, cuts);
   for (const Surface& surface : model.surfaces) vertex_count_ += std::int32_t(surface.vertex.size());
-  seen_in_.assign(std::size_t(vertex_count_), 0);
   overlaps_.reserve(std::size_t(vertex_count_));
   for (std::size_t i = 0; i < model.organs.size(); ++i) {
     if (i < model.surfaces.size() && !model.surfaces[i].triangle.empty()) continue;
@@ -36,31 +37,23 @@ void ObstacleContact::find(const StateView& state, const PressStep& step, PointC
 
 void ObstacleContact::find_on_surface(const StateView& state, const PressStep& step, std::size_t obstacle,
                                       surface::Body& body, PointContacts& contacts) {
-  const surface::ObstacleShape& shape = shapes_[obstacle];
-  const auto look_at = [&](surface::Body& part, const auto& is_new) {
-    part.surface.near(shape, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::int32_t vertex = triangle.corner[c];
-        if (!is_new(vertex)) continue;
-        const surface::Inside inside = shape.inside(corners[c]);
-        if (inside.depth > 0) overlaps_.push_back({part.facets.facet_of(vertex), vertex, inside.depth, inside.outward});
-      }
-    });
-  };
-  ++round_;
-  look_at(body, [&](std::int32_t vertex) {
-    return std::exchange(seen_in_[std::size_t(body.first_vertex + vertex)], round_) != round_ &&
-           !cuts_.hides(body.first_vertex + vertex);
-  });
-  const std::size_t own = overlaps_.size();
-  double area = area_of(body, overlaps_);
-  cuts_.near(std::size_t(body.organ), shape, [&](cutbody::CutPatch& patch) {
+  NearObstacle& near = near_[obstacle * bodies_.size() + std::size_t(&body - bodies_.data())];
+  std::size_t own = 0;
+  double area = 0;
+  const std::vector<NearObstacle::Found>& found = near.find(state.position);
+  for (auto begin = found.begin(); begin != found.end();) {
+    const auto end = std::find_if(begin, found.end(), [&](const auto& f) { return f.part != begin->part; });
+    const NearObstacle::Part& part = near.parts()[std::size_t(begin->part)];
     const std::size_t first = overlaps_.size();
-    is_seen_.assign(patch.body.surface.vertex_count(), 0);
-    look_at(patch.body, [&](std::int32_t vertex) { return !std::exchange(is_seen_[std::size_t(vertex)], 1); });
-    area += area_of(patch.body, std::span(overlaps_).subspan(first));
-    patches_.push_back({&patch, first, overlaps_.size()});
-  });
+    for (; begin != end; ++begin)
+      overlaps_.push_back(
+          {part.body->facets.facet_of(begin->vertex), begin->vertex, begin->inside.depth, begin->inside.outward});
+    area += area_of(*part.body, std::span(overlaps_).subspan(first));
+    if (part.patch == nullptr)
+      own = overlaps_.size();
+    else
+      patches_.push_back({part.patch, first, overlaps_.size()});
+  }
   const std::span<surface::Overlap> all(overlaps_);
   const double radius = radius_of(area);
   const auto kind = std::int32_t(2 + obstacle);

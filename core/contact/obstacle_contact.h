@@ -6,6 +6,7 @@
 
 #include "core/contact/cut_surfaces.h"
 #include "core/contact/facet_press.h"
+#include "core/contact/near_obstacle.h"
 #include "core/contact/point_contact.h"
 #include "core/contact/pressed_point.h"
 #include "core/model/model.h"
@@ -38,11 +39,9 @@ class ObstacleContact {
   CutSurfaces& cuts_;
   FacetPress press_;
   std::vector<surface::ObstacleShape> shapes_;  ///< of Model::obstacles
+  std::vector<NearObstacle> near_;              ///< by obstacle, for each of the bodies
   std::int32_t vertex_count_ = 0;               ///< through all organs
   std::vector<std::int32_t> bare_;              ///< spheres of organs without a surface
-  std::vector<std::uint32_t> seen_in_;          ///< round in which a vertex was looked at
-  std::uint32_t round_ = 0;
-  std::vector<std::uint8_t> is_seen_;  ///< whether a vertex of a patch was looked at
   std::vector<surface::Overlap> overlaps_;
   /// A patch, and which of the overlaps are its.
   struct PatchOverlaps {

@@ -77,6 +77,13 @@ class CutPatches {
   /// `meets(Box)`.
   template <class Region, class Visit>
   void near(const Region& region, Visit&& visit);
+  /// How many blocks are covered; within what box what is in one of them is now [m]; its patches, in the round.
+  std::size_t covered_count() const { return covered_.size(); }
+  Box box_of(std::size_t covered) {
+    if (found_in_ != round_) find_displacements();
+    return covered_[covered].rest.moved(displacements_[std::size_t(covered_[covered].bin)]);
+  }
+  const std::vector<std::unique_ptr<CutPatch>>& patches(std::size_t covered) { return made(covered_[covered]); }
   /// Begins the round for a patch that near() visited before.
   void begin(const CutPatch& patch) { (void)made(covered_[std::size_t(index_of_[std::size_t(patch.block)])]); }
   /// The patch that a vertex of a block is in; null: there is none.
@@ -134,9 +141,9 @@ void CutPatches::near(const Region& region, Visit&& visit) {
   if (!is_cut()) return;
   if (found_in_ != round_) find_displacements();
   if (!region.meets(all_.moved(all_displacements_))) return;
-  for (Covered& covered : covered_) {
-    if (!region.meets(covered.rest.moved(displacements_[std::size_t(covered.bin)]))) continue;
-    for (const auto& patch : made(covered)) visit(*patch);
+  for (std::size_t covered = 0; covered < covered_.size(); ++covered) {
+    if (!region.meets(box_of(covered))) continue;
+    for (const auto& patch : patches(covered)) visit(*patch);
   }
 }
 

@@ -115,7 +115,11 @@ void NearSurface::add_turned(const SurfaceBinding& binding, const OrganRange& or
     for (Index& sphere : frame.sphere) sphere += organ.first;
   turn_.resize(frame_.size()), turn_in_.assign(frame_.size(), 0);
   first_turned_.assign(vertex_count() + 1, 0);
-  for (const TurnedOffset& offset : turned_) ++first_turned_[std::size_t(offset.vertex) + 1];
+  offset_size_.assign(vertex_count(), 0);
+  for (const TurnedOffset& offset : turned_) {
+    ++first_turned_[std::size_t(offset.vertex) + 1];
+    offset_size_[std::size_t(offset.vertex)] += norm(offset.offset);
+  }
   std::partial_sum(first_turned_.begin(), first_turned_.end(), first_turned_.begin());
 }
 
@@ -161,9 +165,7 @@ NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_tr
         negative -= std::min(weight_[e], 0.0);
       }
       widen = std::max(widen, negative);
-      double farthest = 0;
-      for (const TurnedOffset& offset : turned_of(corner)) farthest += 2 * norm(offset.offset);
-      turned = std::max(turned, farthest);
+      turned = std::max(turned, 2 * offset_size(corner));
     }
   std::sort(bound_spheres_.begin() + begin, bound_spheres_.end());
   return {first, last, begin, Index(bound_spheres_.size()), box, widen, turned};
@@ -215,10 +217,7 @@ Vec3 NearSurface::place(Index vertex) {
   const auto v = std::size_t(vertex);
   if (placed_in_[v] == round_) return placed_[v];
   placed_in_[v] = round_;
-  Vec3 sum;
-  for (auto e = std::size_t(first_[v]); e < std::size_t(first_[v + 1]); ++e)
-    sum += weight_[e] * position_[std::size_t(in_spheres_[e])];
-  return placed_[v] = sum + offset(vertex);
+  return placed_[v] = carried(vertex) + offset(vertex);
 }
 
 Vec3 NearSurface::offset(Index vertex) const {

@@ -95,6 +95,15 @@ class NearSurface {
   Vec3 place(Index vertex);
   /// What turns with its spheres and is in no weight [m].
   Vec3 offset(Index vertex) const;
+  /// It is at most so long, however the spheres turn [m].
+  double offset_size(Index vertex) const { return offset_size_.empty() ? 0 : offset_size_[std::size_t(vertex)]; }
+  /// Where a vertex would be without it [m].
+  Vec3 carried(Index vertex) const {
+    Vec3 sum;
+    for (auto e = std::size_t(first_[std::size_t(vertex)]); e < std::size_t(first_[std::size_t(vertex) + 1]); ++e)
+      sum += weight_[e] * position_[std::size_t(in_spheres_[e])];
+    return sum;
+  }
 
   /// Calls `visit(triangle, corners)` for every triangle whose patch may meet `region`, with the positions of its
   /// corners, in a fixed order. `region`: anything with `meets(Box)`.
@@ -137,6 +146,7 @@ class NearSurface {
   std::span<const Vec3> rest_;         ///< of all vertices [m]
   std::vector<TurnedOffset> turned_;   ///< ascending by vertex
   std::vector<Index> first_turned_;    ///< of each vertex, and their number; empty if no vertex has any
+  std::vector<double> offset_size_;    ///< of each vertex; empty as the last one [m]
   std::vector<TissueFrame> frame_;     ///< their spheres are places in spheres_
   mutable std::vector<Turn> turn_;     ///< how each frame has turned, if it was asked for
   mutable std::vector<std::uint32_t> turn_in_;      ///< round in which it was found

@@ -1,5 +1,6 @@
 #include "core/surface/obstacle_shape.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -54,6 +55,14 @@ bool ObstacleShape::meets(const Box& box) const {
   if (!bounds_.meets(box)) return false;
   // No point of the box is farther from its centre than a corner.
   return kind_ == ObstacleKind::box || -inside(0.5 * (box.low + box.high)).depth <= 0.5 * norm(box.high - box.low);
+}
+
+double ObstacleShape::clearance(const Box& box) const {
+  const Vec3 centre = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low), normal = half_space_.normal;
+  if (kind_ == ObstacleKind::plane)
+    return -inside(centre).depth -
+           (std::abs(normal.x) * half.x + std::abs(normal.y) * half.y + std::abs(normal.z) * half.z);
+  return std::max(gap(bounds_, box), -inside(centre).depth - norm(half));
 }
 
 Inside ObstacleShape::inside_box(Vec3 point) const {

@@ -18,6 +18,8 @@ class ObstacleShape {
 
   /// Whether something in `box` may be inside; false only if nothing is.
   bool meets(const Box& box) const;
+  /// No point of `box` is nearer to the obstacle than this [m]; 0 or less: one may be inside.
+  double clearance(const Box& box) const;
 
  private:
   Inside inside_box(Vec3 point) const;

@@ -1,5 +1,8 @@
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,7 +26,33 @@ namespace {
 struct ReplayArguments {
   std::string file, csv;
   bool overwrite = false;
+  int times = 1;
   session::TimeRange range;
+};
+
+/// The least time of each tick over some replays [s]: what it takes where nothing else runs.
+class LeastTimes {
+ public:
+  explicit LeastTimes(session::TickRange range)
+      : least_(std::size_t(range.to - range.from), std::numeric_limits<double>::infinity()) {}
+
+  void add(std::size_t tick, double time) { least_[tick] = std::min(least_[tick], time); }
+
+  /// `tick`: how long one may take [s].
+  std::string text(int times, double tick) const {
+    std::vector<double> sorted = least_;
+    std::sort(sorted.begin(), sorted.end());
+    const auto ms = [&](double share) {
+      return output::fixed(1e3 * sorted[std::min(std::size_t(share * double(sorted.size())), sorted.size() - 1)], 3);
+    };
+    const auto above = std::count_if(sorted.begin(), sorted.end(), [&](double time) { return time > tick; });
+    return "least time of each tick over " + std::to_string(times) + " replays: p50 " + ms(0.5) + " ms, p99 " +
+           ms(0.99) + " ms, p99.9 " + ms(0.999) + " ms, max " + ms(1) + " ms, " + std::to_string(above) + " of " +
+           std::to_string(sorted.size()) + " above " + output::fixed(1e3 * tick, 3) + " ms\n";
+  }
+
+ private:
+  std::vector<double> least_;
 };
 
 std::string csv_header(const Model& model, const std::vector<session::Probe>& probes) {
@@ -93,28 +122,38 @@ int run_replay(const ReplayArguments& arguments) {
   warn_of_physics(*reader);
   Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(*reader);
   if (!cursor) return print_errors(cursor.errors());
-  if (const Result<Done> found = cursor->seek(range->from); !found) return print_errors(found.errors());
   ProgressLine progress("replaying");
   const std::vector<session::Probe> probes = session::probes_of(*reader);
+  const std::int64_t ticks = range->to - range->from;
   std::string rows = csv_header(model, probes);
   double most_force = 0, most_depth = 0;
-  while (cursor->tick() < range->to) {
-    const Result<bool> went_on = cursor->step();
-    if (!went_on) return print_errors(went_on.errors());
-    if (!arguments.csv.empty()) rows += csv_row(model, *cursor, probes);
-    for (std::size_t hand = 0; hand < kMostHands; ++hand) {
-      most_force = std::max(most_force, norm(cursor->report().of_hand(hand).tool_force));
-      most_depth = std::max(most_depth, cursor->report().of_hand(hand).depth);
+  LeastTimes least(*range);
+  bool is_same = true;
+  for (int time = 0; time < arguments.times; ++time) {
+    if (const Result<Done> found = cursor->seek(range->from); !found) return print_errors(found.errors());
+    while (cursor->tick() < range->to) {
+      const auto start = std::chrono::steady_clock::now();
+      const Result<bool> went_on = cursor->step();
+      if (!went_on) return print_errors(went_on.errors());
+      least.add(std::size_t(cursor->tick() - 1 - range->from),
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      if (!arguments.csv.empty() && time == 0) rows += csv_row(model, *cursor, probes);
+      for (std::size_t hand = 0; hand < kMostHands; ++hand) {
+        most_force = std::max(most_force, norm(cursor->report().of_hand(hand).tool_force));
+        most_depth = std::max(most_depth, cursor->report().of_hand(hand).depth);
+      }
+      progress.show(time * ticks + cursor->tick() - range->from, arguments.times * ticks);
     }
-    progress.show(cursor->tick() - range->from, range->to - range->from);
+    is_same = is_same && cursor->same_so_far();
   }
   if (!arguments.csv.empty())
     if (const Result<Done> written = output::write_text_file(arguments.csv, rows); !written)
       return print_errors(written.errors());
-  print("%s: %lld ticks replayed, %s, %s%s%s\n", arguments.file.c_str(), (long long)(range->to - range->from),
-        extremes_text(most_force, most_depth).c_str(), cursor->same_so_far() ? "as recorded" : "NOT as recorded",
+  print("%s: %lld ticks replayed, %s, %s%s%s\n", arguments.file.c_str(), (long long)ticks,
+        extremes_text(most_force, most_depth).c_str(), is_same ? "as recorded" : "NOT as recorded",
         arguments.csv.empty() ? "" : "; written to ", arguments.csv.c_str());
-  return cursor->same_so_far() ? exit_good : exit_bad_verdict;
+  if (arguments.times > 1 && ticks > 0) print("%s", least.text(arguments.times, model.tick).c_str());
+  return is_same ? exit_good : exit_bad_verdict;
 }
 
 }  // namespace
@@ -128,6 +167,9 @@ Command add_replay(CLI::App& program) {
   add_time_range(*app, arguments->range);
   app->add_option("--csv", arguments->csv, "Table with time, tool, force, depth and probes of each tick");
   app->add_flag("--overwrite", arguments->overwrite, "Replace an existing table");
+  app->add_option("--times", arguments->times,
+                  "Replay it so often, and print the least that each tick took: its own time, whatever else runs")
+      ->check(CLI::Range(1, 100));
   return {app, [arguments] { return run_replay(*arguments); }};
 }
 

@@ -8,15 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "tests/core/cut_blocks.h"
+#include "tests/core/contact/swing.h"
 
 namespace ctpm {
 namespace {
 
 using contact::BallPart, contact::NearTriangles, contact::Reach;
+using testing::kTop;
 
 constexpr double kRadius = 0.008, kMargin = 0.3 * kRadius;  // [m]
-constexpr double kTop = 0.036;                              // of the block [m]
 
 /// A triangle: the block of the grid that its patch is in (-1: it is of the whole surface), the piece, and its corners.
 using Seen = std::array<std::int32_t, 5>;
@@ -34,31 +34,17 @@ std::vector<Seen> touching(const NearTriangles& near, const Reach& reach) {
   return seen;
 }
 
-/// A ball's way through a block whose spheres swing; how often it jumped and what was touched is for the test to know.
-struct Way {
-  const Model& model;
-  State state;
-  Vec3Array rest;
+/// Where the ball is in a tick.
+Reach ball_at(int tick) {
+  const double phase = 0.05 * tick;
+  const bool jumps = tick % 97 == 96;
+  Reach reach({0.02 * std::sin(0.6 * phase) + (jumps ? 0.01 : 0.0), 0.02 * std::cos(0.41 * phase), kTop}, kRadius);
+  // What was touched before reaches farther, and comes and goes at once.
+  if (tick % 31 < 15) reach.distance = std::max(reach.distance, reach.add(reach.centre + Vec3{0.011, 0, -0.004}));
+  return reach;
+}
 
-  explicit Way(const Model& m, State first) : model(m), state(std::move(first)), rest(state.position) {}
-
-  /// Where the ball is in a tick; the spheres are moved on.
-  Reach at(int tick) {
-    const double phase = 0.05 * tick;
-    for (std::size_t i = 0; i < rest.size(); ++i) {
-      const Vec3 p = rest[i];
-      const double swing = 2e-3 * std::sin(phase + 60 * p.x) * p.z / kTop;
-      state.position.set(i, p + Vec3{swing, 0.5 * swing, -std::abs(swing)});
-    }
-    const bool jumps = tick % 97 == 96;
-    Reach reach({0.02 * std::sin(0.6 * phase) + (jumps ? 0.01 : 0.0), 0.02 * std::cos(0.41 * phase), kTop}, kRadius);
-    // What was touched before reaches farther, and comes and goes at once.
-    if (tick % 31 < 15) reach.distance = std::max(reach.distance, reach.add(reach.centre + Vec3{0.011, 0, -0.004}));
-    return reach;
-  }
-};
-
-void expect_nothing_left_out(const Model& model, State first, bool is_cut) {
+void expect_nothing_left_out(const Model& model, State state, bool is_cut) {
   contact::CutSurfaces cuts(model);
   cuts.prepare();
   surface::NearSurface kept(model, 0, 1), anew(model, 0, 1);
@@ -66,11 +52,11 @@ void expect_nothing_left_out(const Model& model, State first, bool is_cut) {
   gathering.add(model.surfaces[0], 0.001);
   const auto slots = std::int32_t(model.surfaces[0].vertex.size());
   NearTriangles near({{0, 0, &kept, &gathering}}, slots, cuts, 0);
-  Way way(model, std::move(first));
+  const Vec3Array rest = state.position;
   std::size_t most_patches = 0, most_seen = 0;
   for (int tick = 0; tick < 1200; ++tick) {
-    const Reach reach = way.at(tick);
-    const State& state = way.state;
+    const Reach reach = ball_at(tick);
+    testing::swing(rest, tick, state.position);
     cuts.begin_tick(state, false), cuts.begin(state.position);
     kept.begin(state.position), anew.begin(state.position);
     (void)cuts.wait_near(reach.box, state, kept);
@@ -98,15 +84,7 @@ TEST(NearTriangles, LeaveOutNothingThatABallMayTouchWhileItMoves) {
 
 TEST(NearTriangles, LeaveOutNothingOfACutThatABallMayTouchWhileItMoves) {
   const Model model = testing::block_to_cut(6, 6, 4, kRadius);
-  State state = rest_state(model);
-  testing::cut_along(
-      model,
-      [](double t) {
-        const double y = -0.06 + 0.12 * t;
-        return testing::straight_front({0, y, 0.012}, {0, y, 0.06});
-      },
-      state);
-  expect_nothing_left_out(model, std::move(state), true);
+  expect_nothing_left_out(model, testing::half_cut(model, 0.012), true);
 }
 
 }  // namespace

@@ -49,8 +49,11 @@ void do_main_job(const TemporaryFolder& folder, const std::string& mesh,
   EXPECT_EQ(info.code, 0) << info.err;
   EXPECT_TRUE(holds(info.out, "cut")) << info.out;
   const auto replayed =
-      run_ctpm({"replay", "session.ctpm", "--from-s", "0.5", "--to-s", "0.6", "--csv", "session.csv"}, folder.path());
+      run_ctpm({"replay", "session.ctpm", "--from-s", "0.5", "--to-s", "0.6", "--csv", "session.csv", "--times", "3"},
+               folder.path());
   EXPECT_EQ(replayed.code, 0) << replayed.err;
+  EXPECT_TRUE(holds(replayed.out, "least time of each tick over 3 replays: p50 ")) << replayed.out;
+  EXPECT_TRUE(holds(replayed.out, " of 100 above 1.000 ms")) << replayed.out;
   const std::string csv = testing::slurp(folder.path() / "session.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 101);  // a header and 100 ticks
 

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/contact/cut_surfaces.h"
+#include "core/model/model.h"
+#include "core/surface/bodies.h"
+#include "core/surface/obstacle_shape.h"
+
+namespace ctpm::contact {
+
+/// Which vertices of an organ and of its cuts are inside an obstacle. How far each was away is known from when it was
+/// looked at, and it is looked at again only when it may have come so far: what is far or at rest costs nothing. Parts
+/// of surfaces are looked at by their boxes until these may be inside. When something was looked at changes no result.
+class NearObstacle {
+ public:
+  /// A vertex that is inside.
+  struct Found {
+    std::int32_t part;  ///< in parts()
+    std::int32_t vertex;
+    std::int32_t order;  ///< in which vertices of the part first occur in its triangles
+    surface::Inside inside;
+  };
+  struct Part {
+    surface::Body* body;
+    cutbody::CutPatch* patch;  ///< null: the organ's own surface
+    std::array<std::int32_t, 2> order;
+    std::vector<std::int32_t> first_corner;  ///< where each vertex first occurs in its triangles (vertex_count)
+  };
+
+  /// All of them must outlive the NearObstacle.
+  NearObstacle(const Model& model, surface::Body& body, const surface::ObstacleShape& shape, CutSurfaces& cuts);
+
+  /// Finds them with the spheres at `position` [m], by part, in a round of bodies and cuts that has begun.
+  const std::vector<Found>& find(const Vec3Array& position);
+
+  const std::vector<Part>& parts() const { return parts_; }
+
+ private:
+  /// Something that is outside as long as its organ's spheres have not moved to `due`.
+  enum class Kind : std::uint8_t { block, group, patch, vertex };
+  struct Item {
+    double due;  ///< in path_ [m]
+    Kind kind;
+    std::int32_t part, number;
+
+    bool operator<(const Item& other) const { return due > other.due; }  // the first due is on top of a heap
+  };
+
+  void begin_anew();
+  void add_part(surface::Body& body, cutbody::CutPatch* patch, std::array<std::int32_t, 2> order);
+  void look_at(Item item);
+  void look_at_block(Item item);
+  void look_at_bound(Item item);
+  void look_at_vertex(Item item);
+  void wait(Item item, double clearance, double stretch);
+
+  const OrganRange& organ_;
+  surface::Body& body_;
+  const surface::ObstacleShape& shape_;
+  CutSurfaces& cuts_;
+  bool has_begun_ = false;
+  std::uint32_t version_ = 0;
+  Vec3Array position_;  ///< of the organ's spheres in the last round [m]
+  double path_ = 0;     ///< sum over the rounds of how far the farthest of them moved [m]
+  std::vector<Part> parts_;
+  std::vector<Item> waiting_;  ///< heap
+  std::vector<Item> always_;   ///< due in every round
+  std::vector<Item> due_;      ///< in this one
+  std::vector<Found> found_;
+};
+
+}  // namespace ctpm::contact

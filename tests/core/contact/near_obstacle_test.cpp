@@ -1,0 +1,125 @@
+// What NearObstacle finds in each tick is every vertex inside the obstacle, of the organ's own surface and of cuts.
+
+#include "core/contact/near_obstacle.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "tests/core/contact/swing.h"
+
+namespace ctpm {
+namespace {
+
+using contact::NearObstacle;
+using testing::kTop;
+
+constexpr Vec3 kMiddle{0, 0, 0.5 * kTop};  // of the block [m]
+
+/// A vertex that is inside: the block of the grid that its patch is in (-1: it is of the whole surface), the piece, the
+/// vertex, and how deep it is [m].
+using Seen = std::tuple<std::int32_t, std::int32_t, std::int32_t, double>;
+
+std::vector<Seen> found(NearObstacle& near, const Vec3Array& position) {
+  std::vector<Seen> seen;
+  for (const NearObstacle::Found& f : near.find(position)) {
+    const cutbody::CutPatch* patch = near.parts()[std::size_t(f.part)].patch;
+    seen.emplace_back(patch == nullptr ? -1 : patch->block, patch == nullptr ? -1 : patch->piece, f.vertex,
+                      f.inside.depth);
+  }
+  return seen;
+}
+
+/// All vertices that are inside, in the order in which NearSurface::near() and CutPatches::near() visit them.
+std::vector<Seen> all_inside(surface::Body& body, contact::CutSurfaces& cuts, const surface::ObstacleShape& shape) {
+  std::vector<Seen> seen;
+  const Box everywhere(Vec3{-1, -1, -1}, Vec3{1, 1, 1});
+  const auto add = [&](surface::Body& part, const cutbody::CutPatch* patch) {
+    std::vector<char> was(part.surface.vertex_count(), 0);
+    part.surface.near(everywhere, [&](const surface::NearSurface::Triangle& t, const Vec3* corners) {
+      for (int c = 0; c < 3; ++c) {
+        if (std::exchange(was[std::size_t(t.corner[c])], 1) || (patch == nullptr && cuts.hides(t.corner[c]))) continue;
+        const double depth = shape.inside(corners[c]).depth;
+        if (depth > 0)
+          seen.emplace_back(patch == nullptr ? -1 : patch->block, patch == nullptr ? -1 : patch->piece, t.corner[c],
+                            depth);
+      }
+    });
+  };
+  add(body, nullptr);
+  cuts.near(0, everywhere, [&](cutbody::CutPatch& patch) { add(patch.body, &patch); });
+  return seen;
+}
+
+/// `turn`: by how much the block turns over in a tick [rad].
+void expect_all_found(Model model, const Obstacle& obstacle, State first, double turn = 0) {
+  model.obstacles = {obstacle};
+  contact::CutSurfaces cuts(model);
+  std::vector<surface::Body> bodies = surface::bodies_of(model), others = surface::bodies_of(model);
+  const surface::ObstacleShape shape(obstacle);
+  NearObstacle near(model, bodies[0], shape, cuts);
+  State state = std::move(first);
+  const Vec3Array rest = state.position;
+  std::size_t most = 0, fewest = 1000;
+  for (int tick = 0; tick < 600; ++tick) {
+    testing::swing(rest, tick, state.position);
+    // The block bounces on the obstacle, and once it jumps.
+    const double up = 0.004 * std::abs(std::sin(0.013 * tick)) + (tick > 500 && tick < 520 ? 0.03 : 0);
+    const Quat over{std::cos(0.5 * turn * tick), std::sin(0.5 * turn * tick), 0, 0};
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      state.position.set(i, kMiddle + rotate(over, state.position[i] - kMiddle) + Vec3{0, 0, up - 0.001});
+    cuts.begin_tick(state, false), cuts.begin(state.position);
+    bodies[0].surface.begin(state.position), others[0].surface.begin(state.position);
+    (void)cuts.wait_near(Box(Vec3{-1, -1, -1}, Vec3{1, 1, 1}), state, bodies[0].surface);
+    const std::vector<Seen> seen = found(near, state.position);
+    ASSERT_EQ(seen, all_inside(others[0], cuts, shape)) << "tick " << tick;
+    most = std::max(most, seen.size()), fewest = std::min(fewest, seen.size());
+  }
+  EXPECT_GT(most, 40u);
+  EXPECT_EQ(fewest, 0u);
+}
+
+/// Two cuts across the block, with a strip of a seventh of a spacing between them.
+State thin_strip(const Model& model) {
+  State state = testing::half_cut(model, 0.012);
+  testing::cut_along(
+      model,
+      [](double t) {
+        const double y = -0.06 + 0.12 * t;
+        return testing::straight_front({0.0017, y, 0.012}, {0.0017, y, 0.06});
+      },
+      state);
+  return state;
+}
+
+Model block() { return testing::block_to_cut(6, 6, 4, 0.008); }
+
+Obstacle above(ObstacleKind kind, Vec3 half = {}) {
+  return {"above", kind, {0, 0, kTop + half.z}, {0, 1, 0, 0}, half};  // upside down: it fills what is above
+}
+
+TEST(NearObstacle, FindsEachVertexThatIsInsideAPlaneWhileTissueMoves) {
+  const Model model = block();
+  expect_all_found(model, above(ObstacleKind::plane), rest_state(model));
+}
+
+TEST(NearObstacle, FindsThoseOfACutInsideAPlane) {
+  const Model model = block();
+  expect_all_found(model, above(ObstacleKind::plane), testing::half_cut(model, 0.012));
+}
+
+TEST(NearObstacle, FindsThoseOfACutInsideABox) {
+  const Model model = block();
+  expect_all_found(model, above(ObstacleKind::box, {0.02, 0.03, 0.01}), testing::half_cut(model, 0.012));
+}
+
+TEST(NearObstacle, FindsThoseOfAThinStripThatTurnsOver) {
+  const Model model = block();
+  expect_all_found(model, above(ObstacleKind::plane), thin_strip(model), 0.01);
+}
+
+}  // namespace
+}  // namespace ctpm
