@@ -359,6 +359,7 @@ step("an export is the one that the shown command makes, and can be cancelled", 
   const field = (label) => page.locator(`#panel .field:has-text("${label}") input`);
   const choose = (label, value) => page.locator(`#panel .field:has-text("${label}") select`).selectOption(value);
   const makesWhatItShows = async (name, options) => {
+    await studio.quiet(); // the camera that the program chose has come: what is shown is what will be exported
     const shown = await page.locator("#panel .command code").innerText();
     for (const option of options) assert.ok(shown.includes(option), shown);
     const command = ctpmBeside(folder, ...shown.split(" ").slice(1).map((word) => (word === `${name}.avi` ? `${name}-command.avi` : word)));
