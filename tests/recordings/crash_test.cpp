@@ -15,7 +15,7 @@ namespace {
 
 using namespace ctpm::testing;
 
-TEST(Crash, AKilledRecorderLosesAtMost200Ms) { kill_recorders(100); }
+TEST(Crash, AKilledRecorderLosesAtMost200Ms) { kill_recorders(40); }
 
 /// Runs `work` in a process whose files cannot exceed `bytes`, as on a full disk. Returns its exit code.
 int on_a_full_disk(rlim_t bytes, const std::function<int()>& work) {

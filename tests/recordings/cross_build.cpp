@@ -1,9 +1,12 @@
 // One build in a comparison of builds; cross_builds.sh compiles this file in several ways.
 //   cross_build record FROM TO     simulates the inputs of session FROM in this build and records them as TO
 //   cross_build verify FILE...     replays sessions in this build; exit code 1 if any differs
+//   cross_build verify-end TICKS FILE   the same of the last ticks of one, from the keyframe before them
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 
 #include "core/stepping/step.h"
@@ -44,10 +47,12 @@ int record(const std::string& from, const std::string& to) {
   return 0;
 }
 
-int verify(const std::string& file) {
+int verify(const std::string& file, std::int64_t last = INT64_MAX) {
   auto session = recordings::SessionReader::open(file);
   if (!session) return fail(session.errors());
-  const auto verdict = recordings::verify_session(*session);
+  recordings::VerifyOptions options;
+  options.from = std::max<std::int64_t>(0, session->tick_count() - last);
+  const auto verdict = recordings::verify_session(*session, options);
   if (!verdict) return fail(verdict.errors());
   std::printf("%s: %s\n", file.c_str(), recordings::to_string(*verdict).c_str());
   return verdict->same ? 0 : 1;
@@ -59,8 +64,9 @@ int verify(const std::string& file) {
 int main(int argc, char** argv) {
   const std::string action = argc > 1 ? argv[1] : "";
   if (action == "record" && argc == 4) return ctpm::record(argv[2], argv[3]);
+  if (action == "verify-end" && argc == 4) return ctpm::verify(argv[3], std::atoll(argv[2]));
   if (action != "verify" || argc < 3)
-    return std::fprintf(stderr, "usage: cross_build record FROM TO | verify FILE...\n"), 2;
+    return std::fprintf(stderr, "usage: cross_build record FROM TO | verify FILE... | verify-end TICKS FILE\n"), 2;
   int worst = 0;
   for (int i = 2; i < argc; ++i) worst = std::max(worst, ctpm::verify(argv[i]));
   return worst;

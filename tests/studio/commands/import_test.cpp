@@ -97,7 +97,7 @@ TEST_F(ImportProgram, AnOrganOfThePaperIsFittedAndUnderTheTensionOfItsCapsule) {
 TEST_F(ImportProgram, AllPartsAreInTheSceneAsWell) {
   const importers::RawMesh two = zoo::both(bean(), zoo::moved(bean(), [](Vec3 p) { return p + Vec3{120, 0, 0}; }));
   write("two.obj", zoo::to_obj_text(two));
-  const std::vector<std::string> coarse{"--unit", "mm", "--stiffness-scale", "1", "--radius-mm", "5", "--overwrite"};
+  const std::vector<std::string> coarse{"--unit", "mm", "--stiffness-scale", "1", "--radius-mm", "8", "--overwrite"};
   const auto import_as = [&](const std::string& parts) {
     std::vector<std::string> arguments = coarse;
     arguments.push_back(parts);
@@ -113,11 +113,11 @@ TEST_F(ImportProgram, AllPartsAreInTheSceneAsWell) {
 
 TEST_F(ImportProgram, AHoleWiderThanUsualIsFilledWhenThatIsAskedFor) {
   write("open.obj", zoo::to_obj_text(zoo::without(bean(1, 3), [](Vec3 p) { return p.x > 40; })));
-  const auto refused = import("open.obj", {"--unit", "mm"});
+  const auto refused = import_quickly("open.obj");
   EXPECT_EQ(refused.code, 2);
   expect_says(refused.err, {"open beyond repair: a hole", "--largest-hole-mm "});
   EXPECT_FALSE(fs::exists(folder_.path() / "scene.json"));
-  const auto filled = import("open.obj", {"--unit", "mm", "--largest-hole-mm", "60"});
+  const auto filled = import_quickly("open.obj", {"--largest-hole-mm", "60"});
   EXPECT_EQ(filled.code, 0) << filled.err;
   expect_says(filled.out, {"1 hole, the widest", "filled", "next: ctpm record scene.json"});
   EXPECT_EQ(import("open.obj", {"--largest-hole-mm", "-1"}).code, 2);

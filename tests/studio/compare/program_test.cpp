@@ -32,9 +32,14 @@ double value_of(const std::string& json, const std::string& key, const std::stri
   return found < end ? std::strtod(json.c_str() + found + name.size() + 4, nullptr) : NAN;
 }
 
-/// Works beside the shipped sessions.
+/// Works beside the shipped sessions. A replay of them takes seconds: what asks for no replayed force says --no-verify.
 class Compare : public ::testing::Test {
  protected:
+  /// What `compare --json` prints of the shipped presses, replayed: once for all tests.
+  const testing::ProgramOutcome& presses() const {
+    static const testing::ProgramOutcome kCompared = compare(press_, hard_press_, {"--json"});
+    return kCompared;
+  }
   testing::ProgramOutcome compare(const std::string& expert, const std::string& trainee,
                                   const std::vector<std::string>& more = {}) const {
     std::vector<std::string> command{"compare", expert, trainee};
@@ -75,14 +80,14 @@ TEST_F(Compare, AClumsyCutIsWorseInEveryMeasureThatHasAnExpertsValue) {
 }
 
 TEST_F(Compare, AHardPressPassesTheForceOfTheExpertAndTheDamageDepth) {
-  const auto compared = compare(press_, hard_press_, {"--json"});
+  const testing::ProgramOutcome& compared = presses();
   ASSERT_EQ(compared.code, 0) << compared.err;
   EXPECT_EQ(value_of(compared.out, "time_above_force_limit_s", "expert"), 0);
   EXPECT_GT(value_of(compared.out, "time_above_force_limit_s", "trainee"), 0.1);
   EXPECT_EQ(value_of(compared.out, "time_beyond_damage_depth_s", "expert"), 0);
   EXPECT_GT(value_of(compared.out, "time_beyond_damage_depth_s", "trainee"), 0);
   // A limit that is given holds for both.
-  const auto strict = compare(press_, hard_press_, {"--json", "--force-limit", "0.5"});
+  const auto strict = compare(press_, hard_press_, {"--json", "--no-verify", "--force-limit", "0.5"});
   ASSERT_EQ(strict.code, 0) << strict.err;
   EXPECT_GT(value_of(strict.out, "time_above_force_limit_s", "expert"), 0);
   EXPECT_GT(value_of(strict.out, "impulse_above_force_limit_n_s", "trainee"),
@@ -90,7 +95,7 @@ TEST_F(Compare, AHardPressPassesTheForceOfTheExpertAndTheDamageDepth) {
 }
 
 TEST_F(Compare, ASessionBesideItselfIsTheSame) {
-  const auto compared = compare(cut_, cut_, {"--json"});
+  const auto compared = compare(cut_, cut_, {"--json", "--no-verify"});
   ASSERT_EQ(compared.code, 0) << compared.err;
   EXPECT_EQ(value_of(compared.out, "cut_overlap", "trainee"), 1);
   for (const char* none : {"cut_path_mean_distance_mm", "cut_path_hausdorff_mm", "aligned_deviation_mean_mm",
@@ -125,11 +130,11 @@ TEST_F(Compare, WritesOnePageThatLoadsNothingAndItsNumbers) {
   EXPECT_EQ(pictures, 8u);
   const std::string results = slurp(folder_.path() / "report/results.json");
   EXPECT_LT(results.find("Press more gently: 7.8"), results.find("\"measures\""));
-  EXPECT_EQ(results, compare(press_, hard_press_, {"--json"}).out);
+  EXPECT_EQ(results, presses().out);
 }
 
 TEST_F(Compare, NamesTheCommandThatShowsTheWorstMoment) {
-  const auto compared = compare(press_, hard_press_);
+  const auto compared = compare(press_, hard_press_, {"--no-verify"});
   const auto at = compared.out.find("to see the worst: ctpm export ");
   ASSERT_NE(at, std::string::npos) << compared.out;
   std::istringstream words(compared.out.substr(at + std::string("to see the worst: ctpm ").size()));
@@ -142,7 +147,7 @@ TEST_F(Compare, NamesTheCommandThatShowsTheWorstMoment) {
 
 TEST_F(Compare, TheCommandThatShowsTheWorstMomentCanBeTypedWhateverTheFileIsCalled) {
   fs::copy_file(hard_press_, folder_.path() / "Ana's press 1.ctpm");
-  const auto compared = compare(press_, "Ana's press 1.ctpm");
+  const auto compared = compare(press_, "Ana's press 1.ctpm", {"--no-verify"});
   EXPECT_TRUE(holds(compared.out, "to see the worst: ctpm export 'Ana'\\''s press 1.ctpm' -o worst.mp4 "))
       << compared.out;
 }
@@ -153,7 +158,7 @@ TEST_F(Compare, ASessionThatGoesOnFromAnotherIsMeasuredWithAWarning) {
                                   "--fast", "--duration-s", "2"},
                                  folder_.path());
   ASSERT_EQ(recorded.code, 0) << recorded.err;
-  const auto compared = compare(cut_, "on.ctpm", {"--json"});
+  const auto compared = compare(cut_, "on.ctpm", {"--json", "--no-verify"});
   EXPECT_EQ(compared.code, 0) << compared.err;
   EXPECT_TRUE(holds(compared.err, "warning: the sessions begin from different states")) << compared.err;
   // What was severed before the session began is not counted as done in it.

@@ -44,17 +44,18 @@ render::Frame half_of(const render::Frame& whole, int half) {
   return part;
 }
 
-/// A short session of the shipped skin: the ball comes down and presses.
+/// Short sessions of the shipped skin, recorded once for all tests: the ball comes down and presses.
 class Export : public ::testing::Test {
  protected:
-  void SetUp() override { record("press.ctpm", "1.2"); }
-
-  void record(const std::string& name, const std::string& seconds) {
-    const auto recorded = run_ctpm(
-        {"record", std::string(CTPM_SOURCE_DIR) + "/scenes/skin.json", "-o", name, "--fast", "--duration-s", seconds},
-        folder_.path());
-    ASSERT_EQ(recorded.code, 0) << recorded.err;
+  static void SetUpTestSuite() {
+    recorded_ = new TemporaryFolder;
+    for (const auto& [name, s] : {std::pair{"press.ctpm", "1.2"}, {"short.ctpm", "0.6"}})
+      run_ctpm({"record", CTPM_SOURCE_DIR "/scenes/skin.json", "-o", name, "--fast", "--duration-s", s},
+               recorded_->path());
   }
+  static void TearDownTestSuite() { delete recorded_, recorded_ = nullptr; }
+  void SetUp() override { take("press.ctpm"); }
+  void take(const char* name) const { fs::copy_file(recorded_->path() / name, folder_.path() / name); }
 
   /// Exports in a small size; `environment` are settings NAME=VALUE.
   testing::ProgramOutcome export_to(const std::string& output, std::vector<std::string> options = {},
@@ -84,6 +85,7 @@ class Export : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
+  static inline TemporaryFolder* recorded_ = nullptr;
 };
 
 TEST_F(Export, TheSidecarSaysWhatTheVideoShows) {
@@ -224,7 +226,7 @@ TEST_F(Export, CtrlCLeavesNothingBehind) {
 }
 
 TEST_F(Export, BesideSaysThatASessionHasEnded) {
-  record("short.ctpm", "0.6");
+  take("short.ctpm");
   const auto both = run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--from-s", "0.5",
                               "--to-s", "0.8", "--speed", "3", "--align", "clock"},
                              folder_.path());
@@ -237,7 +239,7 @@ TEST_F(Export, BesideSaysThatASessionHasEnded) {
 }
 
 TEST_F(Export, BesideShowsTwoSessionsInStep) {
-  record("short.ctpm", "0.6");
+  take("short.ctpm");
   const auto both = run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--size", "640x180",
                               "--align", "clock", "--overlay", "none"},
                              folder_.path());
@@ -262,7 +264,7 @@ TEST_F(Export, BesideShowsTwoSessionsInStep) {
 }
 
 TEST_F(Export, BesideKeepsTheSecondsThatItIsAheadByHand) {
-  record("short.ctpm", "0.6");
+  take("short.ctpm");
   const auto export_ahead = [&](const char* seconds, const char* from, const char* to) {
     fs::remove_all(folder_.path() / "both");
     return run_ctpm({"export", "press.ctpm", "-o", "both/", "--beside", "short.ctpm", "--fps", "20", "--align", seconds,

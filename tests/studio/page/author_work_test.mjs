@@ -156,7 +156,7 @@ step("changes of one value within half a second are one step", async () => {
 });
 
 // Ten steps in each round: 200 as is promised, or enough of each kind.
-const kRounds = isWhole ? 20 : 5;
+const kRounds = isWhole ? 20 : 3;
 
 step(`${10 * kRounds} steps of all kinds are undone and done again, each as it was`, async () => {
   await page.setViewportSize({ width: 1000, height: 560 }); // fewer pixels are drawn for each
@@ -356,8 +356,8 @@ step("a blade cuts when a scene is tried, and nothing is kept", async () => {
   console.log(`author: from "Try it" to the hand ${Date.now() - started} ms`);
   const middle = await takeUp(page);
   await page.keyboard.press("2");
-  await moveMouse(page, middle, { x: -20, y: 240 }, 45);
-  await moveMouse(page, { x: middle.x - 20, y: middle.y + 240 }, { x: 180, y: 0 }, 60);
+  await moveMouse(page, middle, { x: -20, y: 240 }, 30);
+  await moveMouse(page, { x: middle.x - 20, y: middle.y + 240 }, { x: 180, y: 0 }, 36);
   await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /severed[1-9]/.test(d.textContent)));
   await picture(page, "author-try-cut");
   assert.equal(await page.locator(".recorded").textContent(), "not recorded");

@@ -248,7 +248,9 @@ export async function outOfReach(page) {
     .map((control) => control.outerHTML.slice(0, 120)));
 }
 
+/** A picture of the page, to be looked at by people: it takes most of a second, and so is taken where it is asked for. */
 export async function picture(page, name) {
+  if (!isWhole && process.env.CTPM_PICTURES !== "1") return;
   mkdirSync(pictures, { recursive: true });
   await page.screenshot({ path: join(pictures, `${name}.png`) });
 }

@@ -19,7 +19,21 @@ using testing::kCut, testing::kPress;
 using testing::Serving;
 using testing::SocketClient;
 
-class Comparing : public testing::Reviewing {};
+class Comparing : public testing::Reviewing {
+ protected:
+  /// A ball that presses a small block, whose ticks take no time, and waits that long there.
+  void record_press(const std::string& session, const std::string& wait_s) {
+    std::ofstream(file("block.json")) << R"({"format": "ctpm-scene", "version": 1, "name": "block", "settle_s": 0,
+      "organs": [{"name": "block", "rig": {"block": [4, 4, 3]}, "material": {"preset": "liver"},
+      "anchors": [{"lowest_mm": 1}]}], "tools": [{"name": "ball", "kind": "ball", "radius_mm": 8}]})";
+    std::ofstream(file("press.json")) << R"({"format": "ctpm-script", "version": 1, "steps": [
+      {"take": {"tool": "ball", "at_mm": [0, 0, 45]}}, {"press": {"distance_mm": 12, "speed_mm_per_s": 60}},
+      {"wait_s": )" << wait_s << R"(}, {"put_away": true}]})";
+    const testing::ProgramOutcome recorded =
+        testing::run_ctpm({"record", "block.json", "--script", "press.json", "-o", session, "--fast"}, folder_.path());
+    ASSERT_EQ(recorded.code, 0) << recorded.err;
+  }
+};
 
 TEST_F(Comparing, AComparisonSaysHowFarItIsAndCanBeStopped) {
   const Serving serving(folder_.path());
@@ -42,6 +56,7 @@ TEST_F(Comparing, AComparisonSaysHowFarItIsAndCanBeStopped) {
 }
 
 TEST_F(Comparing, WhatIsKnownIsAnsweredAtOnceUntilAFileChanges) {
+  ASSERT_NO_FATAL_FAILURE(record_press("press.ctpm", "20"));
   const Serving serving(folder_.path());
   SocketClient client(serving);
   int id = 50;
@@ -56,7 +71,7 @@ TEST_F(Comparing, WhatIsKnownIsAnsweredAtOnceUntilAFileChanges) {
       was_done = true;
     }
   };
-  const nlohmann::json pair{{"expert", kCut}, {"trainee", kCut}};
+  const nlohmann::json pair{{"expert", "press.ctpm"}, {"trainee", "press.ctpm"}};
   const auto first = compared(pair), again = compared(pair);
   EXPECT_TRUE(first.second);
   EXPECT_FALSE(again.second);
@@ -68,22 +83,16 @@ TEST_F(Comparing, WhatIsKnownIsAnsweredAtOnceUntilAFileChanges) {
   EXPECT_TRUE(other.second);
   EXPECT_NE(other.first, first.first);
   // So is a session that was verified: a remark less may be made of it.
-  ASSERT_EQ(client.call("session.verify", {{"path", kCut}})["result"]["same"], true);
+  ASSERT_EQ(client.call("session.verify", {{"path", "press.ctpm"}})["result"]["same"], true);
   EXPECT_TRUE(compared(pair).second);
   EXPECT_FALSE(compared(pair).second);
-  fs::last_write_time(file(kCut), fs::last_write_time(file(kCut)) + std::chrono::seconds(1));
+  fs::last_write_time(file("press.ctpm"), fs::last_write_time(file("press.ctpm")) + std::chrono::seconds(1));
   EXPECT_TRUE(compared(pair).second);
 }
 
 TEST_F(Comparing, AComparisonKnowsWhatWasVerifiedUntilTheFileChanges) {
   // Longer than sessions that a comparison replays whole.
-  std::ofstream(file("long.json")) << R"({"format": "ctpm-script", "version": 1, "steps": [
-    {"take": {"tool": "ball", "at_mm": [0, 0, 75]}}, {"move": {"to_mm": [0, 0, 70], "speed_mm_per_s": 10}},
-    {"wait_s": 31}, {"put_away": true}]})";
-  const std::string scene = std::string(CTPM_SOURCE_DIR) + "/scenes/kidney.json";
-  const testing::ProgramOutcome recorded =
-      testing::run_ctpm({"record", scene, "--script", "long.json", "-o", "long.ctpm", "--fast"}, folder_.path());
-  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  ASSERT_NO_FATAL_FAILURE(record_press("long.ctpm", "31"));
   fs::copy(file("long.ctpm"), file("other.ctpm"));
   const Serving serving(folder_.path());
   SocketClient client(serving);

@@ -13,9 +13,11 @@ using testing::ProgramOutcome;
 using testing::run_ctpm;
 using testing::slurp;
 
-constexpr const char* kThousand = R"("method": "latin-hypercube", "samples": 1000, "vary": [
+std::string samples(std::size_t count) {
+  return R"("method": "latin-hypercube", "samples": )" + std::to_string(count) + R"(, "vary": [
     {"key": "/organs/0/material/stiffness_scale", "from": 0.5, "to": 4},
     {"of": "script", "key": "/steps/1/press/distance_mm", "from": 1, "to": 6}])";
+}
 
 class SweepOnACluster : public ::testing::Test {
  protected:
@@ -37,9 +39,12 @@ class SweepOnACluster : public ::testing::Test {
     return Cluster::within_a_minute([&] { return count_finished() >= finished; });
   }
   const fs::path& folder() const { return temporary_.path(); }
+  /// A sweep of so many sessions, in 20 elements, ends with all rows after two kills of the node and one of the
+  /// controller.
+  void end_after_kills(std::size_t sessions);
 
  private:
-  /// 2,000 sessions are written to last, which a disk is slow at: they lie in memory where that has room.
+  /// All sessions are written to last, which a disk is slow at: they lie in memory where that has room.
   struct InMemory {
     InMemory() {
       constexpr std::uintmax_t kRoom = 256 << 20;
@@ -51,18 +56,20 @@ class SweepOnACluster : public ::testing::Test {
   testing::TemporaryFolder temporary_;
 };
 
-TEST_F(SweepOnACluster, EndsWithAllRowsAfterTwoKillsOfTheNodeAndOneOfTheController) {
+void SweepOnACluster::end_after_kills(std::size_t sessions) {
+  const std::string all_of_them = std::to_string(sessions), of_element = std::to_string(sessions / 20);
   testing::write_rig(folder());
-  testing::write_sweep(folder(), kThousand);
+  testing::write_sweep(folder(), samples(sessions));
   ASSERT_EQ(run({"plan", "sweep.json", "-o", "out"}).code, 0);
   ASSERT_EQ(run({"plan", "sweep.json", "-o", "here"}).code, 0);
   Cluster cluster(25);
   ASSERT_TRUE(cluster.is_ready()) << slurp(cluster.path() / "slurmctld.out") << slurp(cluster.path() / "slurmd.out");
 
-  const ProgramOutcome too_many = run({"run", "out", "--slurm", "--tasks-per-element", "20"});
+  const std::string too_few = std::to_string(sessions / 50);
+  const ProgramOutcome too_many = run({"run", "out", "--slurm", "--tasks-per-element", too_few});
   EXPECT_EQ(too_many.code, 2);
-  EXPECT_NE(too_many.err.find(
-                "--tasks-per-element: error: got 20, which makes more elements than Slurm's MaxArraySize of 25"),
+  EXPECT_NE(too_many.err.find("--tasks-per-element: error: got " + too_few +
+                              ", which makes more elements than Slurm's MaxArraySize of 25"),
             std::string::npos)
       << too_many.err;
   const ProgramOutcome nowhere = run({"run", "out", "--slurm", "--partition", "none-such"});
@@ -70,23 +77,25 @@ TEST_F(SweepOnACluster, EndsWithAllRowsAfterTwoKillsOfTheNodeAndOneOfTheControll
   EXPECT_NE(nowhere.err.find("invalid partition specified: none-such"), std::string::npos) << nowhere.err;
 
   const ProgramOutcome submitted =
-      run({"run", "out", "--slurm", "--tasks-per-element", "50", "--partition", "all", "--time", "10"});
+      run({"run", "out", "--slurm", "--tasks-per-element", of_element, "--partition", "all", "--time", "10"});
   ASSERT_EQ(submitted.code, 0) << submitted.err;
-  EXPECT_NE(submitted.out.find(": 1000 sessions in 20 elements of up to 50\n"), std::string::npos) << submitted.out;
-  for (const std::size_t finished : {110, 330}) {
+  EXPECT_NE(submitted.out.find(": " + all_of_them + " sessions in 20 elements of up to " + of_element + "\n"),
+            std::string::npos)
+      << submitted.out;
+  for (const std::size_t finished : {sessions * 11 / 100, sessions * 33 / 100}) {
     ASSERT_TRUE(wait_for(finished)) << count_finished();
     cluster.kill_node();
-    EXPECT_LT(count_finished(), 1000u);
+    EXPECT_LT(count_finished(), sessions);
     // As long as it takes to boot. Jobs that are younger than Slurm's BatchStartTimeout and MessageTimeout together are
     // missed only when the node is asked again, which takes 20 s.
     std::this_thread::sleep_for(std::chrono::seconds(4));
     cluster.start_node();
   }
-  ASSERT_TRUE(wait_for(550)) << count_finished();
+  ASSERT_TRUE(wait_for(sessions * 55 / 100)) << count_finished();
   cluster.kill_controller();
-  EXPECT_LT(count_finished(), 1000u);
+  EXPECT_LT(count_finished(), sessions);
   cluster.start_controller();
-  const auto is_complete = [&] { return cluster.tidy_up(), count_finished() == 1000; };
+  const auto is_complete = [&] { return cluster.tidy_up(), count_finished() == sessions; };
   bool all = false;
   for (int minute = 0; minute < 4 && !all; ++minute) all = Cluster::within_a_minute(is_complete);
   ASSERT_TRUE(all) << run({"status", "out"}).out << slurp(cluster.path() / "slurmctld.out");
@@ -94,11 +103,15 @@ TEST_F(SweepOnACluster, EndsWithAllRowsAfterTwoKillsOfTheNodeAndOneOfTheControll
 
   ASSERT_EQ(run({"collect", "out"}).code, 0);
   const std::string rows = slurp(folder() / "out" / "results.csv");
-  EXPECT_EQ(testing::lines_of(rows).size(), 1001u);
+  EXPECT_EQ(testing::lines_of(rows).size(), sessions + 1);
   ASSERT_EQ(run({"run", "here"}).code, 0);
   ASSERT_EQ(run({"collect", "here"}).code, 0);
   EXPECT_EQ(rows, slurp(folder() / "here" / "results.csv"));
 }
+
+TEST_F(SweepOnACluster, EndsWithAllRowsAfterTwoKillsOfTheNodeAndOneOfTheController) { end_after_kills(300); }
+
+TEST_F(SweepOnACluster, SlowEndsWithAThousandRows) { end_after_kills(1000); }
 
 TEST(SweepWithoutACluster, SaysThatSlurmIsMissing) {
   const testing::TemporaryFolder folder;
