@@ -3,6 +3,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "core/stepping/step.h"
 #include "recordings/state_hash.h"
@@ -38,6 +39,7 @@ struct ReplayCursor::Impl {
   stepping::StepReport report;
   bool same = true;
   double spent = 0, allowed = free_time;  ///< computing time of all ticks [s]
+  double tick_time = 0;                   ///< of the last tick [s]
 
   Result<Keyframe> keyframe_for(std::int64_t target);
 };
@@ -108,7 +110,9 @@ Result<bool> ReplayCursor::step() {
   }
   impl.record = impl.ahead[impl.tick - impl.ahead_first];
   const double before = computing_time();
+  const auto start = std::chrono::steady_clock::now();
   impl.report = impl.stepper.step(impl.state, impl.record.inputs);
+  impl.tick_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   impl.spent += computing_time() - before;
   impl.allowed += patience * std::max(impl.reader.start().model.tick, std::min(impl.record.tick_time, longest_stated));
   if (impl.spent > impl.allowed)
@@ -125,6 +129,7 @@ std::int64_t ReplayCursor::tick() const { return impl_->tick; }
 const State& ReplayCursor::state() const { return impl_->state; }
 const TickRecord& ReplayCursor::record() const { return impl_->record; }
 const stepping::StepReport& ReplayCursor::report() const { return impl_->report; }
+double ReplayCursor::tick_time() const { return impl_->tick_time; }
 bool ReplayCursor::same_so_far() const { return impl_->same; }
 
 Result<SessionStart> continue_session(SessionReader& parent, std::int64_t tick) {

@@ -37,6 +37,7 @@ class ReplayCursor {
   const State& state() const;
   const TickRecord& record() const;            ///< recorded values of the last tick done
   const stepping::StepReport& report() const;  ///< simulated values of the last tick done
+  double tick_time() const;                    ///< time that its simulation took now [s]
   bool same_so_far() const;  ///< every tick since the last keyframe or resume() matched its recorded hash
 
  private:

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -132,11 +131,9 @@ int run_replay(const ReplayArguments& arguments) {
   for (int time = 0; time < arguments.times; ++time) {
     if (const Result<Done> found = cursor->seek(range->from); !found) return print_errors(found.errors());
     while (cursor->tick() < range->to) {
-      const auto start = std::chrono::steady_clock::now();
       const Result<bool> went_on = cursor->step();
       if (!went_on) return print_errors(went_on.errors());
-      least.add(std::size_t(cursor->tick() - 1 - range->from),
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      least.add(std::size_t(cursor->tick() - 1 - range->from), cursor->tick_time());
       if (!arguments.csv.empty() && time == 0) rows += csv_row(model, *cursor, probes);
       for (std::size_t hand = 0; hand < kMostHands; ++hand) {
         most_force = std::max(most_force, norm(cursor->report().of_hand(hand).tool_force));
