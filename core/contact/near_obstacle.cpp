@@ -1,6 +1,7 @@
 #include "core/contact/near_obstacle.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "core/contact/moved.h"
@@ -12,10 +13,9 @@ NearObstacle::NearObstacle(const Model& model, surface::Body& body, const surfac
     : organ_(model.organs[std::size_t(body.organ)]), body_(body), shape_(shape), cuts_(cuts) {}
 
 const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& position) {
-  if (!has_begun_ || version_ != cuts_.version())
-    begin_anew();
-  else
-    path_ += farthest_moved(position_, position, std::size_t(organ_.first));
+  const double moved = has_begun_ ? farthest_moved(position_, position, std::size_t(organ_.first)) : 0;
+  path_ += moved;
+  if (!has_begun_ || version_ != cuts_.version() || !std::isfinite(moved)) begin_anew();
   position_.resize(std::size_t(organ_.count));
   for (std::size_t s = 0; s < position_.size(); ++s) position_.set(s, position[std::size_t(organ_.first) + s]);
   found_.clear();
@@ -73,8 +73,8 @@ void NearObstacle::look_at(Item item) {
 }
 
 void NearObstacle::wait(Item item, double clearance, double stretch) {
-  if (!(clearance > 0)) return always_.push_back(item);
-  item.due = path_ + clearance / stretch;
+  if (!(clearance > kRounding)) return always_.push_back(item);
+  item.due = path_ + (clearance - kRounding) / stretch;
   waiting_.push_back(item), std::push_heap(waiting_.begin(), waiting_.end());
 }
 

@@ -76,7 +76,7 @@ void NearTriangles::begin(Look& look, const Reach& reach, const Vec3Array& posit
   look.part = look.group = 0, look.drift = 0;
   look.stretch = cuts_.any() ? cutbody::CutPatches::kStretch : 1;
   for (const BallPart& part : look.parts) look.stretch = std::max(look.stretch, part.surface->stretch());
-  cuts_.near(reach, [&](cutbody::CutPatch& patch) {
+  cuts_.near(reach.grown(kRounding), [&](cutbody::CutPatch& patch) {
     look.parts.push_back({look.slots, cuts_.first_point(kind_, patch), &patch.body.surface, &patch.gathering, &patch});
     look.slots += look.parts.back().slots();
   });
@@ -85,15 +85,16 @@ void NearTriangles::begin(Look& look, const Reach& reach, const Vec3Array& posit
 /// Visits groups until their triangles are `most` or all groups were visited.
 void NearTriangles::go_on(Look& look, const Vec3Array& position, std::size_t most) {
   look.drift = std::max(look.drift, farthest_moved(look.position, position));
+  const Reach around = look.reach.grown(kRounding);
   std::size_t seen = 0;
   for (; look.part < look.parts.size() && seen < most; ++look.part, look.group = 0) {
     surface::NearSurface& surface = *look.parts[look.part].surface;
     for (; look.group < surface.groups().size() && seen < most; ++look.group, seen += kGroupCosts)
-      surface.near(look.reach, look.group, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
+      surface.near(around, look.group, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
         ++seen;
         double turns = 0;
         for (const std::int32_t corner : triangle.corner) turns = std::max(turns, 2 * surface.offset_size(corner));
-        if (look.reach.meets(Box(corners[0], corners[1], corners[2]).grown(turns)))
+        if (around.meets(Box(corners[0], corners[1], corners[2]).grown(turns)))
           look.found.push_back({std::int32_t(look.part), &triangle});
       });
     if (look.group < surface.groups().size()) return;

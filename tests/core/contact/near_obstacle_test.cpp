@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/contact/moved.h"
 #include "tests/core/contact/swing.h"
 
 namespace ctpm {
@@ -74,6 +75,13 @@ void expect_all_found(Model model, const Obstacle& obstacle, State first, double
     cuts.begin_tick(state, false), cuts.begin(state.position);
     bodies[0].surface.begin(state.position), others[0].surface.begin(state.position);
     (void)cuts.wait_near(Box(Vec3{-1, -1, -1}, Vec3{1, 1, 1}), state, bodies[0].surface);
+    if (tick == 250) {  // a step that is refused
+      Vec3Array lost = state.position;
+      lost.set(lost.size() / 2, {NAN, NAN, NAN});
+      bodies[0].surface.begin(lost), cuts.begin(lost);
+      (void)near.find(lost);
+      bodies[0].surface.begin(state.position), cuts.begin(state.position);
+    }
     const std::vector<Seen> seen = found(near, state.position);
     ASSERT_EQ(seen, all_inside(others[0], cuts, shape)) << "tick " << tick;
     most = std::max(most, seen.size()), fewest = std::min(fewest, seen.size());
@@ -99,6 +107,16 @@ Model block() { return testing::block_to_cut(6, 6, 4, 0.008); }
 
 Obstacle above(ObstacleKind kind, Vec3 half = {}) {
   return {"above", kind, {0, 0, kTop + half.z}, {0, 1, 0, 0}, half};  // upside down: it fills what is above
+}
+
+TEST(FarthestMoved, IsInfinitelyFarWhereAnyPlaceIsNotFinite) {
+  Vec3Array before(3), now(5);
+  now.set(3, {0, 3, 4});
+  EXPECT_DOUBLE_EQ(contact::farthest_moved(before, now, 2), 5);
+  for (const double bad : {double(NAN), double(INFINITY)}) {
+    now.set(2, {bad, 0, 0});
+    EXPECT_EQ(contact::farthest_moved(before, now, 2), INFINITY) << "wherever it is";
+  }
 }
 
 TEST(NearObstacle, FindsEachVertexThatIsInsideAPlaneWhileTissueMoves) {

@@ -60,6 +60,13 @@ void expect_nothing_left_out(const Model& model, State state, bool is_cut) {
     cuts.begin_tick(state, false), cuts.begin(state.position);
     kept.begin(state.position), anew.begin(state.position);
     (void)cuts.wait_near(reach.box, state, kept);
+    if (tick == 250) {  // a step that is refused
+      Vec3Array lost = state.position;
+      lost.set(lost.size() / 2, {NAN, NAN, NAN});
+      kept.begin(lost), cuts.begin(lost);
+      near.find(reach, kMargin, lost);
+      kept.begin(state.position), cuts.begin(state.position);
+    }
     near.find(reach, kMargin, state.position);
     const std::vector<Seen> seen = touching(near, reach);
     most_patches = std::max(most_patches, near.parts().size() - 1), most_seen = std::max(most_seen, seen.size());
