@@ -10,13 +10,20 @@ namespace ctpm::contact {
 
 NearObstacle::NearObstacle(const Model& model, surface::Body& body, const surface::ObstacleShape& shape,
                            CutSurfaces& cuts)
-    : organ_(model.organs[std::size_t(body.organ)]), body_(body), shape_(shape), cuts_(cuts) {}
+    : organ_(model.organs[std::size_t(body.organ)]), body_(body), shape_(shape), cuts_(cuts) {
+  // As long as nothing is cut, ticks take no memory.
+  const surface::NearSurface& surface = body.surface;
+  const std::size_t most = surface.vertex_count() + surface.groups().size() + surface.patches().size();
+  for (std::vector<Item>* items : {&waiting_, &always_, &due_}) items->reserve(most);
+  found_.reserve(surface.vertex_count()), position_.resize(std::size_t(organ_.count));
+  begin_anew();
+}
 
 const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& position) {
   const double moved = has_begun_ ? farthest_moved(position_, position, std::size_t(organ_.first)) : 0;
   path_ += moved;
-  if (!has_begun_ || version_ != cuts_.version() || !std::isfinite(moved)) begin_anew();
-  position_.resize(std::size_t(organ_.count));
+  if (version_ != cuts_.version() || !std::isfinite(moved)) begin_anew();
+  has_begun_ = true;
   for (std::size_t s = 0; s < position_.size(); ++s) position_.set(s, position[std::size_t(organ_.first) + s]);
   found_.clear();
   due_.insert(due_.end(), always_.begin(), always_.end()), always_.clear();
@@ -36,8 +43,8 @@ const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& posi
 
 /// All is to be looked at.
 void NearObstacle::begin_anew() {
-  has_begun_ = true, version_ = cuts_.version(), path_ = 0;
-  parts_.clear(), waiting_.clear(), always_.clear();
+  version_ = cuts_.version(), path_ = 0;
+  parts_.clear(), waiting_.clear(), always_.clear(), due_.clear();
   add_part(body_, nullptr, {-1, 0});
   if (cutbody::CutPatches* const patches = cuts_.patches(std::size_t(body_.organ)))
     for (std::size_t block = 0; block < patches->covered_count(); ++block)

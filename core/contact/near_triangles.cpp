@@ -49,6 +49,9 @@ void NearTriangles::find(const Reach& reach, double margin, const Vec3Array& pos
   const auto may_use = [&](Look& look) {
     return look.has_begun && look.version == cuts_.version() && look.position.size() == position.size();
   };
+  // Whichever goes on later takes no memory then.
+  for (Look* look : {&used_, &next_})
+    if (!look->has_begun && look->position.size() != position.size()) look->position = position;
   const Reach wider = reach.grown(margin);
   if (!may_use(next_)) next_.has_begun = false;
   const double moved = may_use(used_) ? farthest_moved(used_.position, position) : 0;
