@@ -1,10 +1,9 @@
 #include "studio/render/frame.h"
 
+#include <png.h>
+
 #include <algorithm>
 #include <filesystem>
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 #include <system_error>
 
 namespace ctpm::render {
@@ -33,41 +32,61 @@ Frame join_beside(const Frame& left, const Frame& right) {
   return both;
 }
 
+namespace {
+
+/// What libpng is told about a picture; it frees what libpng keeps.
+struct Png {
+  png_image image{};
+
+  Png() { image.version = PNG_IMAGE_VERSION; }
+  explicit Png(const Frame& frame) : Png() {
+    image.width = png_uint_32(frame.width), image.height = png_uint_32(frame.height);
+    image.format = PNG_FORMAT_RGB, image.flags = PNG_IMAGE_FLAG_FAST;
+  }
+  ~Png() { png_image_free(&image); }
+  Png(const Png&) = delete;
+  Png& operator=(const Png&) = delete;
+};
+
+}  // namespace
+
+Result<std::vector<std::uint8_t>> to_png(const Frame& frame) {
+  if (frame.width <= 0 || frame.height <= 0) return Error{"picture", "has no pixels", ""};
+  CTPM_CHECK(frame.rgb.size() == std::size_t(frame.width) * std::size_t(frame.height) * 3, "three bytes a pixel");
+  Png png(frame);
+  std::vector<std::uint8_t> bytes(PNG_IMAGE_PNG_SIZE_MAX(png.image));
+  png_alloc_size_t size = bytes.size();
+  if (!png_image_write_to_memory(&png.image, bytes.data(), &size, 0, frame.rgb.data(), 0, nullptr))
+    return Error{"picture", std::string("cannot be encoded as PNG: ") + png.image.message, ""};
+  bytes.resize(size);
+  return bytes;
+}
+
 Result<Done> write_png(const std::string& path, const Frame& frame) {
   if (frame.width <= 0 || frame.height <= 0) return Error{path, "the picture has no pixels", ""};
   if (!path.ends_with(".png")) return Error{path, "a picture's name must end in .png", ""};
   const std::string part = path.substr(0, path.size() - 4) + ".part.png";
-  std::string reason = "the file cannot be written";
-  bool written = false;
-  try {
-    const cv::Mat rgb(frame.height, frame.width, CV_8UC3, const_cast<std::uint8_t*>(frame.rgb.data()));
-    cv::Mat bgr;
-    cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-    written = cv::imwrite(part, bgr);
-  } catch (const cv::Exception& problem) {
-    reason = problem.err;
-  }
+  Png png(frame);
   std::error_code failed;
+  const bool written = png_image_write_to_file(&png.image, part.c_str(), 0, frame.rgb.data(), 0, nullptr) != 0;
   if (written) std::filesystem::rename(part, path, failed);
   if (!written || failed) {
-    if (failed) reason = failed.message();
+    const std::string reason = failed ? failed.message() : png.image.message;
     std::filesystem::remove(part, failed);
     return Error{path, "the picture could not be written: " + reason, "check that the folder exists and is writable"};
   }
   return Done{};
 }
 
-Result<Frame> read_picture(const std::string& path) {
-  try {
-    cv::Mat bgr = cv::imread(path, cv::IMREAD_COLOR);
-    if (bgr.empty()) return Error{path, "no picture could be read", ""};
-    Frame frame = blank_frame(bgr.cols, bgr.rows, 0, 0, 0);
-    cv::Mat rgb(frame.height, frame.width, CV_8UC3, frame.rgb.data());
-    cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
-    return frame;
-  } catch (const cv::Exception& problem) {
-    return Error{path, "no picture could be read: " + problem.err, ""};
-  }
+Result<Frame> read_png(const std::string& path) {
+  Png png;
+  const auto problem = [&] { return Error{path, std::string("no picture could be read: ") + png.image.message, ""}; };
+  if (!png_image_begin_read_from_file(&png.image, path.c_str())) return problem();
+  png.image.format = PNG_FORMAT_RGB;
+  Frame frame = blank_frame(int(png.image.width), int(png.image.height), 0, 0, 0);
+  const png_color on_black{0, 0, 0};
+  if (!png_image_finish_read(&png.image, &on_black, frame.rgb.data(), 0, nullptr)) return problem();
+  return frame;
 }
 
 }  // namespace ctpm::render

@@ -22,11 +22,14 @@ Frame blank_frame(int width, int height, std::uint8_t red, std::uint8_t green, s
 /// Two pictures of equal height side by side, with a thin line between them.
 Frame join_beside(const Frame& left, const Frame& right);
 
+/// The bytes of a PNG file. Errors: an empty frame.
+Result<std::vector<std::uint8_t>> to_png(const Frame& frame);
+
 /// Writes a PNG file under a temporary name beside `path`, then renames it. Errors: an empty frame, a name that does
 /// not end in .png, a folder that cannot be written.
 Result<Done> write_png(const std::string& path, const Frame& frame);
 
-/// Reads a picture in a format of this OpenCV build (PNG). Errors: no file, not a picture.
-Result<Frame> read_picture(const std::string& path);
+/// Reads a PNG file; what is transparent in it, on black. Errors: no file, not a PNG.
+Result<Frame> read_png(const std::string& path);
 
 }  // namespace ctpm::render

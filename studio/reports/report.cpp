@@ -2,8 +2,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <vector>
 
 #include "studio/output/files.h"
@@ -143,17 +141,9 @@ std::string Report::html() const {
 }
 
 Result<std::string> to_data_uri(const render::Frame& frame) {
-  if (frame.width <= 0 || frame.height <= 0) return Error{"picture", "is empty", ""};
-  CTPM_CHECK(frame.rgb.size() == std::size_t(frame.width) * std::size_t(frame.height) * 3, "three bytes a pixel");
-  cv::Mat bgr(frame.height, frame.width, CV_8UC3);
-  for (std::size_t i = 0; i < frame.rgb.size(); ++i) bgr.data[i] = frame.rgb[i / 3 * 3 + (2 - i % 3)];
-  std::vector<unsigned char> png;
-  try {
-    if (!cv::imencode(".png", bgr, png)) return Error{"picture", "cannot be encoded as PNG", ""};
-  } catch (const cv::Exception& error) {
-    return Error{"picture", std::string("cannot be encoded as PNG: ") + error.what(), ""};
-  }
-  return "data:image/png;base64," + base64(png);
+  const Result<std::vector<std::uint8_t>> png = render::to_png(frame);
+  if (!png) return png.errors();
+  return "data:image/png;base64," + base64(*png);
 }
 
 namespace {

@@ -7,14 +7,11 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
-#include <opencv2/videoio/registry.hpp>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
-#include "studio/video/h264_file.h"
+#include "studio/video/video_file.h"
 
 namespace ctpm::video {
 namespace {
@@ -23,32 +20,26 @@ namespace fs = std::filesystem;
 
 /// One video format.
 struct Format {
-  int fourcc;   ///< 0: PNG pictures
-  int backend;  ///< of OpenCV, which reads H.264 but does not write it
+  std::optional<Coding> coding;  ///< none: PNG pictures
   const char* codec;
   const char* container;  ///< for people
   const char* ending;     ///< of the requested path
   const char* written;    ///< its replacement in the written path
 
-  bool is_pictures() const { return fourcc == 0; }
-  bool is_h264() const { return backend == cv::CAP_FFMPEG; }
+  bool is_pictures() const { return !coding; }
 };
 
 /// Best first: each is the fallback of the one before.
-const std::array<Format, 3>& formats() {
-  static const std::array<Format, 3> all{{
-      {cv::VideoWriter::fourcc('a', 'v', 'c', '1'), cv::CAP_FFMPEG, "H.264", "H.264", ".mp4", ".mp4"},
-      {cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), cv::CAP_OPENCV_MJPEG, "Motion JPEG", "Motion JPEG in AVI", ".avi",
-       ".avi"},
-      {0, 0, "PNG", "a folder of PNG pictures", "/", "-frames"},
-  }};
-  return all;
-}
+constexpr std::array<Format, 3> kFormats{{
+    {Coding::h264, "H.264", "H.264", ".mp4", ".mp4"},
+    {Coding::motion_jpeg, "Motion JPEG", "Motion JPEG in AVI", ".avi", ".avi"},
+    {std::nullopt, "PNG", "a folder of PNG pictures", "/", "-frames"},
+}};
 
 /// Index of the requested format; 3 if the ending is unknown.
 std::size_t format_asked_for(const std::string& path) {
   std::size_t i = 0;
-  while (i < formats().size() && !path.ends_with(formats()[i].ending)) ++i;
+  while (i < kFormats.size() && !path.ends_with(kFormats[i].ending)) ++i;
   return i;
 }
 
@@ -94,9 +85,7 @@ struct VideoWriter::Parts {
   double fps = 0;
   std::int64_t frames = 0;
   bool is_finished = false;
-  std::unique_ptr<H264File> h264;
-  cv::VideoWriter motion_jpeg;
-  cv::Mat bgr;
+  std::unique_ptr<VideoFile> file;  ///< none: pictures
 
   Result<Done> open_first(std::size_t asked_for);
   bool open();
@@ -114,10 +103,10 @@ struct VideoWriter::Parts {
 
 /// Opens the requested format, or the first of the later ones that works.
 Result<Done> VideoWriter::Parts::open_first(std::size_t asked_for) {
-  for (std::size_t i = asked_for; i < formats().size(); ++i) {
-    format = formats()[i];
+  for (std::size_t i = asked_for; i < kFormats.size(); ++i) {
+    format = kFormats[i];
     if (i > asked_for)
-      note = std::string(formats()[asked_for].codec) + " is not available here: " + format.container +
+      note = std::string(kFormats[asked_for].codec) + " is not available here: " + format.container +
              " was written instead";
     path = stem + (i == asked_for && format.is_pictures() ? "" : format.written);
     part = stem + ".part" + std::to_string(getpid()) + (format.is_pictures() ? "" : format.ending);
@@ -130,22 +119,9 @@ Result<Done> VideoWriter::Parts::open_first(std::size_t asked_for) {
 }
 
 bool VideoWriter::Parts::open() {
-  try {
-    constexpr int kNearlyLossless = 95;
-    // What is written is opened again and counted, so there must be a reader, too.
-    if (!cv::videoio_registry::hasBackend(cv::VideoCaptureAPIs(format.backend))) {
-      discard();
-      return false;
-    }
-    if (format.is_h264() ? (h264 = H264File::create(part, width, height, fps)) != nullptr
-                         : motion_jpeg.open(part, format.backend, format.fourcc, fps, {width, height},
-                                            {cv::VIDEOWRITER_PROP_QUALITY, kNearlyLossless}))
-      return true;
-  } catch (const cv::Exception&) {
-    // Try the next format; the note says so.
-  }
-  discard();
-  return false;
+  file = VideoFile::create(part, *format.coding, width, height, fps);
+  if (file == nullptr) discard();
+  return file != nullptr;
 }
 
 Result<Done> VideoWriter::Parts::open_pictures() {
@@ -158,7 +134,7 @@ Result<Done> VideoWriter::Parts::open_pictures() {
 }
 
 void VideoWriter::Parts::discard() {
-  h264.reset(), motion_jpeg.release();
+  file.reset();
   std::error_code ignored;
   if (!part.empty()) fs::remove_all(part, ignored);
 }
@@ -169,51 +145,25 @@ Result<Done> VideoWriter::Parts::put(const render::Frame& frame) {
     if (written) return written;
     return Error{picture_path(path, frames + 1).string(), written.errors()[0].message, "check the free space"};
   }
-  if (h264) return of_video(h264->add(frame));
-  try {
-    const cv::Mat rgb(frame.height, frame.width, CV_8UC3, const_cast<std::uint8_t*>(frame.rgb.data()));
-    cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-    motion_jpeg.write(bgr);
-  } catch (const cv::Exception& problem) {
-    return Error{path, "a frame could not be written: " + problem.err, ""};
-  }
-  return Done{};
+  return of_video(file->add(frame));
 }
 
-Result<Done> VideoWriter::Parts::close() {
-  motion_jpeg.release();
-  return h264 ? of_video(h264->finish()) : Done{};
-}
+Result<Done> VideoWriter::Parts::close() { return file ? of_video(file->finish()) : Done{}; }
 
 /// Reopens the closed temporary file, decodes its first frame and counts all.
 Result<VideoFacts> VideoWriter::Parts::check_file() const {
-  VideoFacts facts{path, format.codec, note, 0, 0, 0, 0, 0};
-  try {
-    cv::VideoCapture reader(part, format.backend);
-    if (!reader.isOpened())
-      return Error{path, "the video that was written cannot be opened again", "check the free space"};
-    facts.width = int(reader.get(cv::CAP_PROP_FRAME_WIDTH)), facts.height = int(reader.get(cv::CAP_PROP_FRAME_HEIGHT));
-    facts.fps = reader.get(cv::CAP_PROP_FPS);
-    if (cv::Mat first; !reader.read(first))
-      return Error{path, "no frame of the video that was written can be decoded", "check the free space"};
-    // As packets: to decode all of them takes a good part of the time that it took to encode them.
-    const std::vector<int> as_packets{cv::CAP_PROP_FORMAT, -1};
-    if (!reader.open(part, format.backend, format.is_h264() ? as_packets : std::vector<int>()))
-      return Error{path, "the video that was written cannot be opened again", "check the free space"};
-    while (reader.grab()) ++facts.frames;
-  } catch (const cv::Exception& problem) {
-    return Error{path, "the video that was written cannot be read: " + problem.err, ""};
-  }
+  const Result<InVideoFile> found = read_video_file(part);
+  if (!found) return Error{path, found.errors()[0].message, found.errors()[0].hint};
   std::error_code failed;
-  facts.bytes = std::int64_t(fs::file_size(part, failed));
-  return facts;
+  const auto bytes = std::int64_t(fs::file_size(part, failed));
+  return VideoFacts{path, format.codec, note, found->width, found->height, found->fps, found->frames, bytes};
 }
 
 /// Opens the first and the last picture and counts those between.
 Result<VideoFacts> VideoWriter::Parts::check_pictures() const {
   VideoFacts facts{path, format.codec, note, 0, 0, fps, 0, 0};
   for (const std::int64_t index : {std::int64_t(1), frames}) {
-    const Result<render::Frame> picture = render::read_picture(picture_path(part, index).string());
+    const Result<render::Frame> picture = render::read_png(picture_path(part, index).string());
     if (!picture) return picture.errors();
     facts.width = picture->width, facts.height = picture->height;
   }
@@ -229,9 +179,9 @@ Errors VideoWriter::check(const std::string& path, int width, int height, double
   Errors errors;
   std::error_code failed;
   const std::size_t asked_for = format_asked_for(path);
-  if (asked_for == formats().size())
+  if (asked_for == kFormats.size())
     errors.push_back({path, "a video's name must end in .mp4 or .avi, or in / for a folder of PNG pictures", ""});
-  else if (!formats()[asked_for].is_pictures() && fs::is_directory(path, failed))
+  else if (!kFormats[asked_for].is_pictures() && fs::is_directory(path, failed))
     errors.push_back({path, "is a folder", "give another name"});
   const auto is_good = [](int n) { return n > 0 && n <= 8192 && n % 2 == 0; };
   if (!is_good(width) || !is_good(height))
@@ -250,7 +200,7 @@ Errors VideoWriter::check(const std::string& path, int width, int height, double
   return errors;
 }
 
-std::string video_library() { return H264File::library() + ", OpenCV " CV_VERSION; }
+std::string video_library() { return VideoFile::library(); }
 
 VideoWriter::VideoWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
@@ -262,7 +212,7 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::create(const std::string& path
   if (Errors errors = check(path, width, height, fps); !errors.empty()) return errors;
   auto parts = std::make_unique<Parts>();
   const std::size_t asked_for = format_asked_for(path);
-  parts->stem = path.substr(0, path.size() - std::string_view(formats()[asked_for].ending).size());
+  parts->stem = path.substr(0, path.size() - std::string_view(kFormats[asked_for].ending).size());
   parts->width = width, parts->height = height, parts->fps = fps;
   if (const Result<Done> opened = parts->open_first(asked_for); !opened) return opened.errors();
   return std::unique_ptr<VideoWriter>(new VideoWriter(std::move(parts)));

@@ -139,7 +139,7 @@ TEST_F(AuthorTools, APreviewShowsMarksAndTheSettledShape) {
     more.insert(more.begin(), {"preview", "scene.json", "-o", name, "--size", "640x360"});
     const auto outcome = ctpm(more);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    const Result<render::Frame> picture = render::read_picture((folder_.path() / name).string());
+    const Result<render::Frame> picture = render::read_png((folder_.path() / name).string());
     return picture ? *picture : render::Frame{};
   };
   const render::Frame plain = draw("plain.png", {}), marked = draw("marked.png", {"--marks"}),

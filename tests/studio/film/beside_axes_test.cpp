@@ -74,7 +74,7 @@ TEST(BesideAxes, BothHalvesShowForcesOnOneScale) {
   for (int frame = 1; std::filesystem::exists(folder.path() / "both" / ("00000" + std::to_string(frame) + ".png"));
        ++frame) {
     const auto picture =
-        render::read_picture((folder.path() / "both" / ("00000" + std::to_string(frame) + ".png")).string());
+        render::read_png((folder.path() / "both" / ("00000" + std::to_string(frame) + ".png")).string());
     ASSERT_TRUE(picture);
     for (int half = 0; half < 2; ++half) {
       const double force = std::atof(reader.read_after(half_of(*picture, half), "force").c_str());

@@ -73,7 +73,7 @@ class Export : public ::testing::Test {
   render::Frame picture(const std::string& folder, int index) {
     char name[32];
     std::snprintf(name, sizeof name, "%06d.png", index);
-    const auto read = render::read_picture((folder_.path() / folder / name).string());
+    const auto read = render::read_png((folder_.path() / folder / name).string());
     EXPECT_TRUE(read) << folder << " " << index;
     return read ? *read : render::Frame{};
   }
@@ -118,7 +118,7 @@ TEST_F(Export, TheVideoShowsTheNumbersOfTheReplay) {
       run({"ffmpeg", "-v", "error", "-i", "a.mp4", "-vf", "select=eq(n\\,8)", "-frames:v", "1", "frame.png"},
           folder_.path());
   ASSERT_EQ(decoded.code, 0) << decoded.err;
-  const auto frame = render::read_picture((folder_.path() / "frame.png").string());
+  const auto frame = render::read_png((folder_.path() / "frame.png").string());
   ASSERT_TRUE(frame);
   ASSERT_EQ(run_ctpm({"replay", "press.ctpm", "--csv", "a.csv"}, folder_.path()).code, 0);
   // Frame 8 shows the state after tick 1199: the last line of the table.
@@ -197,15 +197,14 @@ TEST_F(Export, APartShowsThePicturesThatTheWholeShowsThere) {
 }
 
 TEST_F(Export, AMissingCodecIsReplacedAndThatIsSaidAloud) {
-  const std::string no_ffmpeg = "OPENCV_VIDEOIO_PRIORITY_FFMPEG=0",
-                    no_motion_jpeg = "OPENCV_VIDEOIO_PRIORITY_CV_MJPEG=0";
-  const auto avi = export_to("a.mp4", {}, {no_ffmpeg});
+  const std::string hiding = "LD_PRELOAD=" CTPM_HIDDEN_ENCODERS, no_h264 = "HIDDEN_ENCODERS=libx264 h264";
+  const auto avi = export_to("a.mp4", {}, {hiding, no_h264 + "_v4l2m2m"});
   EXPECT_EQ(avi.code, 0) << avi.err;
   EXPECT_TRUE(holds(avi.err, "warning: H.264 is not available here: Motion JPEG in AVI")) << avi.err;
   EXPECT_TRUE(holds(avi.out, "a.avi: 36 frames")) << avi.out;
   EXPECT_EQ(probe("a.avi"), "mjpeg,320,180,30/1,36\n");
   EXPECT_TRUE(holds(sidecar("a.avi"), "H.264 is not available here"));
-  const auto pictures = export_to("b.mp4", {}, {no_ffmpeg, no_motion_jpeg});
+  const auto pictures = export_to("b.mp4", {}, {hiding, no_h264 + "_v4l2m2m mjpeg"});
   EXPECT_EQ(pictures.code, 0) << pictures.err;
   EXPECT_TRUE(holds(pictures.err, "a folder of PNG pictures was written instead")) << pictures.err;
   EXPECT_EQ(value_of(sidecar("b-frames/video"), "codec"), "\"PNG\"");
@@ -358,7 +357,7 @@ TEST_F(Export, CaptionsAreReadBackAsSubtitlesAndChapters) {
 TEST_F(Export, AContactSheetShowsMomentsThroughTheSession) {
   ASSERT_EQ(run_ctpm({"export", "press.ctpm", "-o", "sheet.png"}, folder_.path()).code, 0);
   ASSERT_EQ(folder_.list(), "press.ctpm sheet.png");
-  const auto page = render::read_picture((folder_.path() / "sheet.png").string());
+  const auto page = render::read_png((folder_.path() / "sheet.png").string());
   ASSERT_TRUE(page);
   ASSERT_EQ(page->width * 10000 + page->height, 12800720);
   const auto tile = [&](int number) {

@@ -338,7 +338,7 @@ TEST(CutPicture, FourStagesOfACutFromTwoCameras) {
       const render::Frame picture = (*made)->draw(stages.states[i], shown);
       EXPECT_TRUE(render::write_png((folder / file).string(), halved(picture)));
       if (i < 2) continue;
-      const auto reference = render::read_picture(looked_at + file);
+      const auto reference = render::read_png(looked_at + file);
       EXPECT_TRUE(reference);
       if (!reference) continue;
       EXPECT_LT(difference(halved(picture), *reference), kTolerance) << file;

@@ -226,7 +226,7 @@ TEST(Png, IsReadBackAsWritten) {
   const render::Frame frame = make_renderer(*scene)->draw(rest_state(scene->model), options);
   const std::string path = testing::TempDir() + "/render_picture.png";
   ASSERT_TRUE(render::write_png(path, frame));
-  const auto back = render::read_picture(path);
+  const auto back = render::read_png(path);
   ASSERT_TRUE(back);
   EXPECT_EQ(*back, frame);
   std::filesystem::remove(path);

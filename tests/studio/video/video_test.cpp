@@ -64,7 +64,7 @@ TEST_F(Video, OtherEndingsGiveMotionJpegAndPictures) {
     EXPECT_EQ(facts->note, "");
   }
   EXPECT_EQ(file_count(), 2);
-  const auto last = render::read_picture(path("frames/000007.png"));
+  const auto last = render::read_png(path("frames/000007.png"));
   ASSERT_TRUE(last);
   EXPECT_EQ(*last, moving_square(320, 180, 6)) << "PNG keeps every pixel";
   EXPECT_FALSE(video::VideoWriter::create(path("frames/"), 320, 180, 25)) << "pictures are never mixed";
