@@ -1,6 +1,5 @@
 #include "core/surface/obstacle_shape.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -50,19 +49,16 @@ Inside ObstacleShape::inside(Vec3 point) const {
   return {-dot(point - half_space_.point, half_space_.normal), half_space_.normal};
 }
 
-bool ObstacleShape::meets(const Box& box) const {
-  if (kind_ == ObstacleKind::plane) return half_space_.meets(box);
-  if (!bounds_.meets(box)) return false;
-  // No point of the box is farther from its centre than a corner.
-  return kind_ == ObstacleKind::box || -inside(0.5 * (box.low + box.high)).depth <= 0.5 * norm(box.high - box.low);
-}
+bool ObstacleShape::meets(const Box& box) const { return clearance(box) <= 0; }
 
 double ObstacleShape::clearance(const Box& box) const {
   const Vec3 centre = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low), normal = half_space_.normal;
   if (kind_ == ObstacleKind::plane)
     return -inside(centre).depth -
            (std::abs(normal.x) * half.x + std::abs(normal.y) * half.y + std::abs(normal.z) * half.z);
-  return std::max(gap(bounds_, box), -inside(centre).depth - norm(half));
+  if (const double apart = gap(bounds_, box); apart > 0) return apart;
+  // No point of the box is farther from its centre than a corner.
+  return -inside(centre).depth - norm(half);
 }
 
 Inside ObstacleShape::inside_box(Vec3 point) const {

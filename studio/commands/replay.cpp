@@ -8,6 +8,7 @@
 
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
+#include "studio/bench/bench.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/commands/extremes_text.h"
@@ -39,15 +40,11 @@ class LeastTimes {
 
   /// `tick`: how long one may take [s].
   std::string text(int times, double tick) const {
-    std::vector<double> sorted = least_;
-    std::sort(sorted.begin(), sorted.end());
-    const auto ms = [&](double share) {
-      return output::fixed(1e3 * sorted[std::min(std::size_t(share * double(sorted.size())), sorted.size() - 1)], 3);
-    };
-    const auto above = std::count_if(sorted.begin(), sorted.end(), [&](double time) { return time > tick; });
+    const auto ms = [&](double share) { return output::fixed(1e3 * bench::percentile(least_, share), 3); };
+    const auto above = std::count_if(least_.begin(), least_.end(), [&](double time) { return time > tick; });
     return "least time of each tick over " + std::to_string(times) + " replays: p50 " + ms(0.5) + " ms, p99 " +
            ms(0.99) + " ms, p99.9 " + ms(0.999) + " ms, max " + ms(1) + " ms, " + std::to_string(above) + " of " +
-           std::to_string(sorted.size()) + " above " + output::fixed(1e3 * tick, 3) + " ms\n";
+           std::to_string(least_.size()) + " above " + output::fixed(1e3 * tick, 3) + " ms\n";
   }
 
  private:

@@ -40,6 +40,7 @@ struct Png {
 
   Png() { image.version = PNG_IMAGE_VERSION; }
   explicit Png(const Frame& frame) : Png() {
+    CTPM_CHECK(frame.rgb.size() == std::size_t(frame.width) * std::size_t(frame.height) * 3, "three bytes a pixel");
     image.width = png_uint_32(frame.width), image.height = png_uint_32(frame.height);
     image.format = PNG_FORMAT_RGB, image.flags = PNG_IMAGE_FLAG_FAST;
   }
@@ -52,7 +53,6 @@ struct Png {
 
 Result<std::vector<std::uint8_t>> to_png(const Frame& frame) {
   if (frame.width <= 0 || frame.height <= 0) return Error{"picture", "has no pixels", ""};
-  CTPM_CHECK(frame.rgb.size() == std::size_t(frame.width) * std::size_t(frame.height) * 3, "three bytes a pixel");
   Png png(frame);
   std::vector<std::uint8_t> bytes(PNG_IMAGE_PNG_SIZE_MAX(png.image));
   png_alloc_size_t size = bytes.size();
