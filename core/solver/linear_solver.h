@@ -29,6 +29,7 @@ struct SolverLimits {
 struct SolverOutcome {
   std::int32_t iterations = 0;
   double residual = 0;  ///< relative to that of the first guess
+  double enough = 0;    ///< residual that counted as solved
   bool converged = false;
 };
 
@@ -114,6 +115,7 @@ SolverOutcome LinearSolver::solve(const elements::Coordinates& b, elements::Coor
       },
       gradient_);
   outcome.iterations = limits.max_iterations - left;
+  outcome.enough = std::sqrt(enough);
   return outcome;
 }
 

@@ -12,8 +12,12 @@ constexpr double kStage = 0.29289321881345248;
 /// Falls back to backward Euler if a sphere moves farther in a step than 10 % of the shortest element.
 constexpr double kLongestMove = 0.1;
 
-/// Falls back to backward Euler if the predictor misses more than 1 % of the kinetic energy.
+/// Falls back to backward Euler if a stage's predictor misses more than 1 % of the kinetic energy.
 constexpr double kLargestPredictorError = 0.01;
+
+/// What solves leave undone, in velocity floors, once both stages' steps have stretched it: a predictor that misses
+/// less than that is as good as known, however little moves.
+constexpr double kLeftUndone = 1 / (kStage * kStage);
 
 constexpr std::vector<double> Vec3Array::*kAxes[3] = {&Vec3Array::x, &Vec3Array::y, &Vec3Array::z};
 
@@ -57,6 +61,13 @@ void find_slope(const StepContext& context, const Vec3Array& from, const Vec3Arr
   });
 }
 
+/// Kinetic energy of all spheres at a velocity [J], twice.
+double energy_at(const Model& model, double velocity) {
+  double mass = 0;
+  for (const double m : model.mass) mass += m;
+  return mass * velocity * velocity;
+}
+
 double shortest_element_of(const Model& model) {
   double shortest = std::numeric_limits<double>::infinity();
   for (const double length : model.axial.rest_length) shortest = std::min(shortest, length);
@@ -71,6 +82,7 @@ Sdirk2::Sdirk2(const StepContext& context, ImplicitSolve& solve)
       fallback_(context, solve),
       check_(context),
       shortest_element_(shortest_element_of(context.model)),
+      left_undone_(energy_at(context.model, kLeftUndone * context.model.solver.velocity_floor)),
       predicted_(context.model),
       second_start_(context.model),
       change_(3 * context.model.sphere_count()) {}
@@ -79,8 +91,7 @@ bool Sdirk2::step(const State& from, const contact::HeldTools& tools, const Subs
                   StepReport& report) {
   to.acceleration.resize(from.position.size());
   const StepStatus before = report.status;
-  if (is_short(from, tools, part) && two_stages(from, tools, part, to, report) &&
-      predictor_error(stage_pins_) <= kLargestPredictorError) {
+  if (is_short(from, tools, part) && two_stages(from, tools, part, to, report)) {
     find_slope(context_, second_start_.velocity, to.velocity, kStage * part.h, to.acceleration);
     return true;
   }
@@ -103,12 +114,13 @@ bool Sdirk2::is_short(const State& from, const contact::HeldTools& tools, const 
   return jump <= limit && fastest * part.h * part.h <= limit * limit;
 }
 
+/// False: a stage failed, or was too far from its predictor.
 bool Sdirk2::two_stages(const State& from, const contact::HeldTools& tools, const Substep& part, Motion& to,
                         StepReport& report) {
   const double h = kStage * part.h, rest = part.h - h;
   extrapolate(context_, from.velocity, from.acceleration, h, predicted_.velocity);
   const Substep first{h, part.time - rest, part.share - rest / context_.model.tick, part.has_loads};
-  if (!dirk_stage(from, tools, first, false, second_start_, report)) return false;
+  if (!dirk_stage(from, tools, first, false, second_start_, report) || !was_predicted()) return false;
   predicted_.velocity = second_start_.velocity;
   stretch(context_, from.velocity, part.h / h, predicted_.velocity);
   stretch(context_, from.position, rest / h, second_start_.position);
@@ -116,7 +128,7 @@ bool Sdirk2::two_stages(const State& from, const contact::HeldTools& tools, cons
   stretch(from.kelvin_elongation.data(), rest / h, second_start_.kelvin_elongation.data(), 0,
           from.kelvin_elongation.size());
   const StateView start(from, second_start_.position, second_start_.velocity, second_start_.kelvin_elongation);
-  return dirk_stage(start, tools, {h, part.time, part.share, part.has_loads}, true, to, report);
+  return dirk_stage(start, tools, {h, part.time, part.share, part.has_loads}, true, to, report) && was_predicted();
 }
 
 /// One stage from `start` into `to`, linearised about the positions to which the velocity in predicted_ leads. The
@@ -146,18 +158,18 @@ bool Sdirk2::dirk_stage(const StateView& start, const contact::HeldTools& tools,
   return true;
 }
 
-/// Share of the kinetic energy at the end of the last stage that its predictor missed; the pins' spheres do not count.
-double Sdirk2::predictor_error(const contact::Pins& pins) {
+/// Whether the predictor of the last stage missed little of its kinetic energy; the pins' spheres do not count.
+bool Sdirk2::was_predicted() {
   const std::size_t n = context_.model.sphere_count();
   const elements::Coordinates& velocity = *stage_velocity_;
   double energy = solve_.energy_of(velocity);
-  for (const contact::Pin& pin : pins) {
+  for (const contact::Pin& pin : stage_pins_) {
     if (!pin.is_held()) continue;
     const std::size_t i = pin.index();
     const Vec3 own{velocity[i], velocity[n + i], velocity[2 * n + i]};
     energy -= context_.model.mass[i] * dot(own, own);
   }
-  return energy > 0 ? solve_.energy_of(change_) / energy : 0.0;
+  return solve_.energy_of(change_) <= std::max(left_undone_, kLargestPredictorError * energy);
 }
 
 }  // namespace ctpm::stepping

@@ -28,13 +28,14 @@ class Sdirk2 {
                   StepReport& report);
   bool dirk_stage(const StateView& start, const contact::HeldTools& tools, const Substep& part, bool is_second,
                   Motion& to, StepReport& report);
-  double predictor_error(const contact::Pins& pins);
+  bool was_predicted();
 
   const StepContext& context_;
   ImplicitSolve& solve_;
   BackwardEuler fallback_;
   VelocityCheck check_;
   double shortest_element_;                                ///< at rest [m]
+  double left_undone_;                                     ///< energy that a predictor may always miss, twice [J]
   Motion predicted_;                                       ///< predictor of the end of a stage
   Motion second_start_;                                    ///< end of the first stage, then start of the second
   elements::Coordinates change_;                           ///< velocity of the last stage minus its predictor [m/s]
