@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/model/errors.h"
 #include "studio/commands/console.h"
 #include "studio/sources/open_file.h"
 
@@ -75,12 +76,15 @@ std::vector<std::string> given_device_flags(const CLI::App& app) {
 
 Result<OpenedDevices> open_devices(const SourceRequest& request) {
   OpenedDevices opened;
-  Result<devices::OpenedDevice> first = devices::open_device(request.device);
-  if (!first) return first.errors();
-  opened[0] = std::move(*first);
-  Result<devices::OpenedDevice> second = devices::open_device(second_of(request));
-  if (!second) return second.errors();
-  opened[1] = std::move(*second);
+  Errors errors;
+  for (std::size_t hand = 0; hand < kMostHands; ++hand) {
+    Result<devices::OpenedDevice> device = devices::open_device(hand == 0 ? request.device : second_of(request));
+    if (device)
+      opened[hand] = std::move(*device);
+    else
+      append(errors, device);
+  }
+  if (!errors.empty()) return errors;
   return opened;
 }
 

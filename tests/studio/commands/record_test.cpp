@@ -130,6 +130,12 @@ TEST_F(Record, WhatDoesNotFitTogetherIsToldAtOnceAndNothingIsWritten) {
   refused({"--continue", "nowhere.ctpm", "--at", "1", "--script", "press.json", "-o", "x.ctpm"},
           {"nowhere.ctpm: error:"});
   refused({"block.json", "--motion", "nowhere.csv", "-o", "x.ctpm"}, {"nowhere.csv: error: does not exist"});
+  // Files that are missing are said with all that is wrong besides.
+  refused({"none.json", "--script", "none-either.json", "--duration-s", "-1", "-o", "no/x.ctpm"},
+          {"none.json: error: does not exist", "none-either.json: error: does not exist",
+           "--duration-s: error:", "no/x.ctpm: error:"});
+  refused({"--continue", "nowhere.ctpm", "--at", "1", "--motion", "nowhere.csv", "-o", "no/x.ctpm"},
+          {"nowhere.ctpm: error: does not exist", "nowhere.csv: error: does not exist", "no/x.ctpm: error:"});
   write("bad.csv", "time_s,tool_x_mm,tool_y_mm,tool_z_mm\n0,0,0,nan\n");
   refused({"block.json", "--motion", "bad.csv", "-o", "x.ctpm"}, {"bad.csv:2:7: error: tool_z_mm: got 'nan'"});
   ctpm({"record", "block.json", "--script", "press.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"});
