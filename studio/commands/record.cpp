@@ -21,7 +21,6 @@
 #include "studio/session/recent_times.h"
 #include "studio/session/record_session.h"
 #include "studio/session/tick_times.h"
-#include "studio/sources/open_file.h"
 
 namespace ctpm::commands {
 namespace {
@@ -76,12 +75,17 @@ struct Beginning {
 };
 
 /// The errors of the flags and of the given files but for the scene's: those of its text come with those of its meshes,
-/// unless there are others.
-Errors errors_beside_scene(const RecordArguments& arguments, const Result<scenes::SceneDraft>& scene) {
+/// unless there are others. Reads the script.
+Errors errors_beside_scene(RecordArguments& arguments, const Result<scenes::SceneDraft>& scene) {
   Errors errors = check(arguments);
-  const SourceRequest& source = arguments.source;
-  if (!source.script.empty())
-    append(errors, sources::check_script(source.script, scene ? *scene : scenes::unknown_scene(arguments.scene)));
+  SourceRequest& source = arguments.source;
+  if (!source.script.empty()) {
+    const Result<std::string> text = output::read_text_file(source.script);
+    source.script_text = text ? *text : "";
+    append(errors,
+           text ? scenes::check_script(*text, source.script, scene ? *scene : scenes::unknown_scene(arguments.scene))
+                : text.errors());
+  }
   if (!source.motion.empty()) append(errors, output::check_readable(source.motion));
   if (!arguments.parent.empty()) append(errors, recordings::SessionReader::open(arguments.parent));
   return errors;
@@ -89,7 +93,7 @@ Errors errors_beside_scene(const RecordArguments& arguments, const Result<scenes
 
 /// Opens the devices first, so that a port in use is reported at once and a device can connect early. Errors: all that
 /// can be said before the scene is filled.
-Result<OpenedDevices> check_and_open(const RecordArguments& arguments) {
+Result<OpenedDevices> check_and_open(RecordArguments& arguments) {
   const Result<scenes::SceneDraft> scene = scenes::load_draft(arguments.scene, arguments.load);
   Errors errors = errors_beside_scene(arguments, scene);
   Result<OpenedDevices> devices = errors.empty() ? open_devices(arguments.source) : OpenedDevices{};
@@ -152,7 +156,7 @@ bool wait_for(const FollowedPlace& one, const std::function<bool()>& should_stop
                                          [&](const std::string& text) { print_remark(one.place + ": " + text); });
 }
 
-int run_record(const RecordArguments& arguments) {
+int run_record(RecordArguments arguments) {
   const StopSignal stop;
   const auto should_stop = [&] { return stop.came(); };
   Result<OpenedDevices> devices = check_and_open(arguments);

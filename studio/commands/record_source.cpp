@@ -117,9 +117,10 @@ Result<ReadySource> open_source(const SourceRequest& request, OpenedDevices devi
     return ReadySource{std::move(followed->source), {{source, devices[0].place}}, std::move(followed->metadata)};
   }
   if (otherwise) print_remark("no source is given: pressing and cutting at the top of the first organ");
-  Result<sources::OpenedSource> opened = otherwise                ? sources::play_script(*otherwise, model)
-                                         : request.script.empty() ? sources::open_motion(request.motion, model)
-                                                                  : sources::open_script(request.script, model, scene);
+  Result<sources::OpenedSource> opened =
+      otherwise                ? sources::play_script(*otherwise, model)
+      : request.script.empty() ? sources::open_motion(request.motion, model)
+                               : sources::read_script_source(request.script_text, request.script, model, scene);
   if (!opened) return opened.errors();
   for (const std::string& remark : opened->remarks) print_remark(remark);
   return ReadySource{std::move(opened->source), {}, std::move(opened->metadata)};

@@ -144,6 +144,17 @@ TEST_F(Record, WhatDoesNotFitTogetherIsToldAtOnceAndNothingIsWritten) {
             {"--at: error: got", "must be in [0, 0.100] s: so long lasts a.ctpm"});
 }
 
+TEST_F(Record, AScriptOrAMotionMayComeThroughAPipe) {
+  write("motion.csv", "time_s,tool_x_mm,tool_y_mm,tool_z_mm\n0,0,0,60\n0.1,0,0,55\n");
+  for (const char* source : {"--script <(cat press.json)", "--motion <(cat motion.csv)"}) {
+    const testing::ProgramOutcome done = testing::run({"bash", "-c",
+                                                       std::string(CTPM_PROGRAM) + " record block.json " + source +
+                                                           " -o piped.ctpm --overwrite --fast --duration-s 0.1"},
+                                                      folder_.path());
+    EXPECT_EQ(done.code, 0) << source << ": " << done.err;
+  }
+}
+
 /// "N ticks" of the line that begins with `what`; -1 if there is none.
 std::int64_t ticks_in(const std::string& text, const std::string& what) {
   const std::size_t line = text.find("\n  " + what);
