@@ -1,6 +1,9 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -60,7 +63,9 @@ bool is_dicom(const std::string& path) {
 Errors check_file(const std::string& path) {
   std::error_code trouble;
   const auto status = std::filesystem::status(path, trouble);
-  if (!std::filesystem::exists(status)) return {{path, "no such file", "check the path"}};
+  if (status.type() == std::filesystem::file_type::not_found) return {{path, "no such file", "check the path"}};
+  if (!trouble && access(path.c_str(), R_OK) != 0) trouble = std::error_code(errno, std::generic_category());
+  if (trouble) return {{path, "cannot be read: " + trouble.message(), ""}};
   if (std::filesystem::is_directory(status)) return {{path, "is a folder, not a mesh file", "name a file in it"}};
   if (!std::filesystem::is_regular_file(status)) return {{path, "is not a regular file", ""}};
   const auto size = std::filesystem::file_size(path, trouble);

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/model/errors.h"
 #include "recordings/internal/session_check.h"
 #include "recordings/internal/session_store.h"
 #include "recordings/internal/statistics.h"
@@ -56,7 +57,7 @@ Result<Done> SessionReader::Impl::read_start() {
     if (result)
       place = std::move(*result);
     else
-      errors.insert(errors.end(), result.errors().begin(), result.errors().end());
+      append(errors, result);
   };
   take(store.scene(), start.scene_text);
   take(store.look(), start.look);

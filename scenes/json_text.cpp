@@ -235,10 +235,11 @@ Error too_long(const std::string& file_name, std::uintmax_t bytes) {
 }
 
 Result<std::string> text_of_file(const std::string& path) {
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) return Error{path, "does not exist", ""};
-  if (!fs::is_regular_file(path, ignored)) return Error{path, "is not a file", ""};
-  if (const std::uintmax_t bytes = fs::file_size(path, ignored); !ignored && bytes > kMostTextBytes)
+  std::error_code failure;
+  if (!fs::exists(path, failure))
+    return Error{path, failure ? "cannot be read: " + failure.message() : "does not exist", ""};
+  if (!fs::is_regular_file(path, failure)) return Error{path, "is not a file", ""};
+  if (const std::uintmax_t bytes = fs::file_size(path, failure); !failure && bytes > kMostTextBytes)
     return too_long(path, bytes);
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;

@@ -137,17 +137,22 @@ void FieldReader::values(const Key& key, std::vector<SweepValue>& value, std::si
   }
 }
 
-Result<SweepText> read_sweep(std::string_view text, const std::string& file_name) {
+Result<SweepDraft> read_sweep_draft(std::string_view text, const std::string& file_name) {
   Result<JsonNode> parsed = parse_json(text, file_name);
   if (!parsed) return parsed.errors();
   const auto root = std::make_shared<const JsonNode>(*std::move(parsed));
-  SweepText sweep;
-  sweep.places = TextPlaces(root, file_name);
-  Problems problems(sweep.places);
-  FieldReader::read_record(*root, "", problems, sweep.spec);
-  check_sweep(problems, sweep.spec);
-  if (!problems.is_empty()) return problems.errors();
-  return sweep;
+  const TextPlaces places(root, file_name);
+  SweepDraft draft{{{}, places}, Problems(places)};
+  FieldReader::read_record(*root, "", draft.problems, draft.sweep.spec);
+  check_sweep(draft.problems, draft.sweep.spec);
+  return draft;
+}
+
+Result<SweepText> read_sweep(std::string_view text, const std::string& file_name) {
+  const Result<SweepDraft> draft = read_sweep_draft(text, file_name);
+  if (!draft) return draft.errors();
+  if (!draft->problems.is_empty()) return draft->problems.errors();
+  return draft->sweep;
 }
 
 }  // namespace ctpm::scenes

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/model/result.h"
+#include "scenes/problems.h"
 #include "scenes/text_places.h"
 
 namespace ctpm::scenes {
@@ -53,6 +54,15 @@ struct SweepText {
   TextPlaces places;
 };
 
+/// A sweep of which some values may be refused. Refused values keep their defaults; `problems` names them.
+struct SweepDraft {
+  SweepText sweep;
+  Problems problems;
+};
+
+/// As read_sweep(), but returns what could be read together with its errors. Errors: the text is not JSON.
+Result<SweepDraft> read_sweep_draft(std::string_view text, const std::string& file_name);
+
 /// Reads the text of a sweep (SWEEP.md). Reports every error at once, each with `file:line:col`: those of the text, its
 /// values, and the rules between them. Reads no scene and no script.
 Result<SweepText> read_sweep(std::string_view text, const std::string& file_name);
@@ -72,7 +82,11 @@ class ValueSlots {
   /// The text with these values, as JSON, at the places (pointer_count).
   std::string with(const std::vector<std::string>& values) const;
 
+  /// Where values stand in the text as its author wrote it; of a text without slots: nothing is known.
+  const TextPlaces& places() const { return places_; }
+
  private:
+  TextPlaces places_;
   std::vector<std::string> between_;  ///< the text around the places, in its order (pointer_count + 1)
   std::vector<std::size_t> pointer_;  ///< whose place follows each of them (pointer_count)
 };

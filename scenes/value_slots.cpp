@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/model/errors.h"
 #include "scenes/json_text.h"
 #include "scenes/json_words.h"
 #include "scenes/sweep.h"
@@ -76,7 +78,7 @@ Result<ValueSlots> ValueSlots::find(const std::string& text, const std::string& 
     if (added)
       whole = std::move(added);
     else
-      errors.insert(errors.end(), added.errors().begin(), added.errors().end());
+      append(errors, added);
   }
   if (!errors.empty()) return errors;
   const Result<Parsed> parsed = parse(*whole, file_name);
@@ -86,6 +88,8 @@ Result<ValueSlots> ValueSlots::find(const std::string& text, const std::string& 
     places.emplace_back(parsed->begin(*follow(parsed->root, pointers[i]).node), i);
   std::sort(places.begin(), places.end());
   ValueSlots slots("");
+  Result<JsonNode> written = parse_json(text, file_name);
+  if (written) slots.places_ = TextPlaces(std::make_shared<const JsonNode>(*std::move(written)), file_name);
   slots.between_.clear();
   std::size_t from = 0;
   for (const auto& [begin, i] : places) {

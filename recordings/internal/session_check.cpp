@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/errors.h"
 #include "recordings/internal/event_check.h"
 #include "recordings/internal/statistics.h"
 #include "recordings/state_hash.h"
@@ -43,7 +44,7 @@ class SessionCheck {
   /// True if good.
   template <class T>
   bool take(const Result<T>& result) {
-    if (!result) errors_.insert(errors_.end(), result.errors().begin(), result.errors().end());
+    append(errors_, result);
     return bool(result);
   }
 

@@ -3,23 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/nearest_rank.h"
 #include "recordings/internal/field_codec.h"
 
 namespace ctpm::recordings::session_file {
-namespace {
-
-/// Nearest rank: the smallest value such that at least the share `part` of all values does not exceed it.
-double percentile(std::vector<float>& values, double part) {
-  if (values.empty()) return 0;
-  const double rank = std::ceil(part * static_cast<double>(values.size()));
-  const auto place =
-      values.begin() + std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(rank) - 1, 0, values.size() - 1);
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
-
-}  // namespace
-
 void StatisticsCounter::add(const TickRecord& record) {
   ++sum_.ticks;
   sum_.severed += record.severed;
@@ -40,13 +27,11 @@ void StatisticsCounter::add(const Event& event) {
 
 SessionStatistics StatisticsCounter::result() const {
   SessionStatistics result = sum_;
-  std::vector<float> times = tick_times_;
-  result.tick_time_p50 = percentile(times, 0.5);
-  result.tick_time_p99 = percentile(times, 0.99);
-  result.tick_time_p999 = percentile(times, 0.999);
-  std::vector<float> ages = input_ages_;
-  result.input_age_p50 = percentile(ages, 0.5);
-  result.input_age_p99 = percentile(ages, 0.99);
+  result.tick_time_p50 = percentile(tick_times_, 0.5);
+  result.tick_time_p99 = percentile(tick_times_, 0.99);
+  result.tick_time_p999 = percentile(tick_times_, 0.999);
+  result.input_age_p50 = percentile(input_ages_, 0.5);
+  result.input_age_p99 = percentile(input_ages_, 0.99);
   return result;
 }
 

@@ -6,7 +6,9 @@
 #include <iterator>
 
 #include "core/cutting/extent.h"
+#include "core/model/errors.h"
 #include "core/surface/surface.h"
+#include "importers/mesh_file.h"
 #include "importers/text.h"
 #include "scenes/build_model.h"
 #include "scenes/scene_file.h"
@@ -86,9 +88,9 @@ class Import {
 
   /// Checks what can be checked before long work, and reads the scene to which organs are added.
   Errors check_files() {
-    if (fs::path(request_.scene).extension() != ".json")
-      return {{request_.scene, "a scene's name must end in .json", ""}};
-    stem_ = fs::path(request_.scene).stem().string();
+    const Result<std::string> stem = stem_of_scene(request_.scene);
+    if (!stem) return stem.errors();
+    stem_ = *stem;
     if (Errors errors = folder_.make(place_); !errors.empty()) return errors;
     if (request_.into) {
       tell("reading the scene", 0);
@@ -99,21 +101,19 @@ class Import {
       return {};
     }
     scene_.name = stem_, scene_.lips_meet = true;
-    if (Errors errors = check_mesh_file(beside(stem_ + ".obj")); !errors.empty()) return errors;
-    Errors errors;
+    Errors errors = importers::check_file(request_.mesh);
+    append(errors, check_mesh_file(beside(stem_ + ".obj")));
     for (const std::string& file : {request_.scene, beside(stem_ + ".script.json")})
-      if (const Result<Done> is_new = output::check_new(file, request_.overwrite); !is_new)
-        errors.insert(errors.end(), is_new.errors().begin(), is_new.errors().end());
+      append(errors, output::check_new(file, request_.overwrite));
     return errors;
   }
 
-  Errors check_mesh_file(const std::string& file) const {
+  Result<Done> check_mesh_file(const std::string& file) const {
     std::error_code ignored;
     if (fs::equivalent(file, request_.mesh, ignored))
-      return {
-          {file, "the repaired mesh would replace the mesh that is imported", "give the scene another name or folder"}};
-    if (const Result<Done> is_new = output::check_new(file, request_.overwrite); !is_new) return is_new.errors();
-    return {};
+      return Error{file, "the repaired mesh would replace the mesh that is imported",
+                   "give the scene another name or folder"};
+    return output::check_new(file, request_.overwrite);
   }
 
   std::string beside(const std::string& name) const { return (fs::path(place_) / name).string(); }
@@ -264,7 +264,7 @@ class Import {
       draft.spec.anchors = request_.anchors, draft.spec.at = draft.part.at = at, draft.spec.turn = request_.turn;
       if (Errors errors = add_layers(draft); !errors.empty()) return errors;
       if (request_.stiffness_scale) draft.spec.material.stiffness_scale = request_.stiffness_scale;
-      if (Errors errors = check_mesh_file(draft.part.mesh_file); !errors.empty()) return errors;
+      if (const Result<Done> is_new = check_mesh_file(draft.part.mesh_file); !is_new) return is_new.errors();
       drafts_.push_back(std::move(draft));
     }
     return {};

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 
 #include "scenes/presets.h"
+#include "studio/output/printable.h"
 #include "studio/render/scene_view.h"
 
 namespace ctpm::authoring {
@@ -110,6 +112,14 @@ double overlap(const FilledOrgan& organ, const FilledOrgan& other) {
 }
 
 double whole_nanometres(double length) { return std::round(1e9 * length) / 1e9; }
+
+Result<std::string> stem_of_scene(const std::string& path) {
+  const std::string stem = std::filesystem::path(path).stem().string();
+  if (!path.ends_with(".json")) return Error{path, "a scene's name must end in .json", ""};
+  if (output::printable(stem) != stem)
+    return Error{path, "a scene's name must be UTF-8, without line breaks and other control characters", ""};
+  return stem;
+}
 
 std::string file_name_of(const std::string& name) {
   std::string safe;

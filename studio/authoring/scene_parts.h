@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/model/organ.h"
+#include "core/model/result.h"
 #include "scenes/scene_spec.h"
 #include "scenes/script.h"
 #include "studio/authoring/tissue_choice.h"
@@ -31,6 +32,9 @@ double overlap(const FilledOrgan& organ, const FilledOrgan& other);
 
 /// A length as an author writes it, without what arithmetic leaves behind: in whole nanometres [m].
 double whole_nanometres(double length);
+
+/// The name of a scene's file without its end. Error: a name that a scene cannot have, for its text says it.
+Result<std::string> stem_of_scene(const std::string& path);
 
 /// A name that a file may have everywhere: letters, digits, - and _ of `name`, others as -.
 std::string file_name_of(const std::string& name);

@@ -107,9 +107,6 @@ double force_error(const BenchRun& run, const BenchRun& reference);
 /// Whether the tool felt any force.
 bool feels(const BenchRun& run);
 
-/// The percentile of `values` at `share` in [0, 1]; 0 if there are none.
-double percentile(std::vector<double> values, double share);
-
 /// Indices of the Pareto-optimal points, fastest first: no other point is both faster and more accurate. A point whose
 /// error is infinite is never one.
 std::vector<std::size_t> pareto_front(const std::vector<double>& cost, const std::vector<double>& error);

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/model/nearest_rank.h"
 #include "core/surface/surface.h"
 #include "studio/loading/standing.h"
 #include "studio/output/number_text.h"

@@ -1,4 +1,4 @@
-// Shared by all studies: timed runs, errors, percentiles, the Pareto front.
+// Shared by all studies: timed runs, errors, the Pareto front.
 
 #include <time.h>
 
@@ -80,13 +80,6 @@ std::optional<std::size_t> first_growth(const std::vector<double>& errors, doubl
   for (std::size_t i = 1; i < errors.size(); ++i)
     if (errors[i] > std::max(kGrowth * errors[i - 1], 2 * gap)) return i;
   return std::nullopt;
-}
-
-double percentile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  const double rank = std::ceil(share * double(values.size()));
-  return values[std::size_t(std::clamp(rank, 1.0, double(values.size()))) - 1];
 }
 
 std::vector<std::size_t> pareto_front(const std::vector<double>& cost, const std::vector<double>& error) {

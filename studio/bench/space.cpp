@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/nearest_rank.h"
 #include "studio/bench/press.h"
 #include "studio/output/number_text.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/nearest_rank.h"
 #include "studio/bench/bench.h"
 #include "studio/fidelity/recipes.h"
 #include "studio/fidelity/references.h"

@@ -6,6 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/model/errors.h"
+#include "core/model/nearest_rank.h"
 #include "core/stepping/step.h"
 #include "studio/bench/bench.h"
 #include "studio/bench/motions.h"
@@ -137,7 +139,7 @@ Result<std::vector<TimeJob>> make_jobs(const BenchOptions& options) {
     if (job)
       jobs.push_back(std::move(*job));
     else
-      errors.insert(errors.end(), job.errors().begin(), job.errors().end());
+      append(errors, job);
   }
   if (!errors.empty()) return errors;
   return jobs;

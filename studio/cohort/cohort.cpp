@@ -5,6 +5,7 @@
 #include <mutex>
 #include <set>
 
+#include "core/model/errors.h"
 #include "core/parallel/team.h"
 #include "recordings/session_reader.h"
 #include "scenes/scene_file.h"
@@ -150,7 +151,7 @@ Result<Experts> measure_experts(TaskResult& task, const std::vector<FoundSession
     if (*one)
       experts.sessions.push_back(std::move(**one));
     else
-      errors.insert(errors.end(), one->errors().begin(), one->errors().end());
+      append(errors, *one);
   }
   if (!errors.empty()) return errors;
   const std::size_t count = experts.sessions.size();
@@ -258,7 +259,7 @@ Result<Cohort> measure_cohort(const scenes::CourseSpec& course, const std::strin
     task.task = course.tasks[i];
     Result<Experts> experts = measure_experts(task, of_task(gathered->experts, i), options, tell);
     if (!experts) {
-      errors.insert(errors.end(), experts.errors().begin(), experts.errors().end());
+      append(errors, experts);
       continue;
     }
     const std::vector<FoundSession> found = of_task(gathered->trainees, i);
@@ -273,7 +274,7 @@ Result<Cohort> measure_cohort(const scenes::CourseSpec& course, const std::strin
         failures[k] = read.errors();
       tell();
     });
-    for (const Errors& failure : failures) errors.insert(errors.end(), failure.begin(), failure.end());
+    for (Errors& failure : failures) append(errors, std::move(failure));
     for (const auto* all : {&task.experts, &task.attempts})
       for (const Attempt& attempt : *all)
         replays = replays && std::ranges::none_of(attempt.remarks, [](const std::string& remark) {

@@ -7,6 +7,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/model/errors.h"
 #include "recordings/session_reader.h"
 #include "studio/compare/session_track.h"
 #include "studio/loading/loaded_scene.h"
@@ -27,6 +28,14 @@ std::vector<fs::path> files_below(const std::string& folder) {
     if (at->is_regular_file(failure) && at->path().extension() == ".ctpm") files.push_back(at->path());
   std::ranges::sort(files);
   return files;
+}
+
+/// Why a folder gave no session.
+Error without_sessions(const std::string& folder, const char* otherwise) {
+  std::error_code failure;
+  fs::directory_iterator(folder, failure);
+  if (failure == std::errc::no_such_file_or_directory) return {folder, "does not exist", ""};
+  return {folder, failure ? "cannot be read: " + failure.message() : otherwise, ""};
 }
 
 std::string person_of(const SessionReader& session, const fs::path& file, const std::string& folder) {
@@ -76,12 +85,12 @@ class Gatherer {
     if (count == 1)
       errors_.push_back({folder, "holds one expert's session, which cannot tell how much experts differ",
                          "at least two are needed for a mean and a spread"});
-    if (count == 0) errors_.push_back({folder, "holds no session that can be read", ""});
+    if (count == 0) errors_.push_back(without_sessions(folder, "holds no session that can be read"));
   }
 
   void add_trainees(const std::string& folder) {
     const std::vector<fs::path> files = files_below(folder);
-    if (files.empty()) errors_.push_back({folder, "holds no session", ""});
+    if (files.empty()) errors_.push_back(without_sessions(folder, "holds no session"));
     for (const fs::path& file : files) {
       const Result<SessionReader> session = open(file);
       if (!session) continue;
@@ -123,7 +132,7 @@ class Gatherer {
  private:
   Result<SessionReader> open(const fs::path& file) {
     Result<SessionReader> session = SessionReader::open(file.string());
-    if (!session) errors_.insert(errors_.end(), session.errors().begin(), session.errors().end());
+    append(errors_, session);
     return session;
   }
 
@@ -163,7 +172,7 @@ SceneFindings find_other_scenes(const scenes::CourseSpec& course, const scenes::
   SceneFindings found;
   for (const scenes::TaskSpec& task : course.tasks) {
     const Result<loading::LoadedScene> scene = loading::load_whole_scene(task.scene, options);
-    if (!scene) found.errors.insert(found.errors.end(), scene.errors().begin(), scene.errors().end());
+    append(found.errors, scene);
     const std::vector<fs::path> files = files_below(task.experts);
     if (!scene || files.empty()) continue;
     const Result<SessionReader> expert = SessionReader::open(files.front().string());

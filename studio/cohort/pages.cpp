@@ -15,6 +15,8 @@ namespace {
 
 using output::short_number;
 
+const std::string kTraineePage = "trainee-";  ///< begins the name of each
+
 const scenes::MarkSpec* mark_of(const TaskResult& task, std::size_t measure) {
   const std::string key = compare::all_measures()[measure]->key;
   const auto found = std::ranges::find(task.task.marks, key, &scenes::MarkSpec::measure);
@@ -116,7 +118,7 @@ std::string page_name(const Cohort& cohort, std::size_t trainee) {
   // Two names may be the same once they are plain.
   std::size_t same = 0;
   for (std::size_t i = 0; i < trainee; ++i) same += plain(cohort.trainees[i]) == plain(cohort.trainees[trainee]);
-  return "trainee-" + plain(cohort.trainees[trainee]) + (same > 0 ? "." + std::to_string(same + 1) : "") + ".html";
+  return kTraineePage + plain(cohort.trainees[trainee]) + (same > 0 ? "." + std::to_string(same + 1) : "") + ".html";
 }
 
 Result<Done> write_cohort(const Cohort& cohort, const std::string& folder, const std::string& home,
@@ -135,7 +137,9 @@ Result<Done> write_cohort(const Cohort& cohort, const std::string& folder, const
   }
   if (Result<Done> written = reports::write_sqlite(folder + "/results.sqlite", "result", rows); !written)
     return written;
-  return reports::write_report(folder, files, kFirstPage);
+  if (Result<Done> written = reports::write_report(folder, files, kFirstPage); !written) return written;
+  reports::remove_old_pages(folder, kTraineePage, files);  // those of trainees who have left
+  return Done{};
 }
 
 }  // namespace ctpm::cohort

@@ -61,8 +61,9 @@ void shape_small(reports::Plot& plot, double rounding);
 /// What the measures of the pages are, with their sources.
 reports::Table meanings(const Cohort& cohort);
 
-/// Writes index.html, a page for each trainee, results.csv, results.sqlite and statements.jsonl to `folder`. `draw` is
-/// called by `threads` threads at once. Errors: those of trainee_page() and of writing them.
+/// Writes index.html, a page for each trainee, results.csv, results.sqlite and statements.jsonl to `folder`, and
+/// removes the pages of trainees who were in an earlier report there and are in this one no more. `draw` is called by
+/// `threads` threads at once. Errors: those of trainee_page() and of writing them.
 Result<Done> write_cohort(const Cohort& cohort, const std::string& folder, const std::string& home,
                           const MomentArtist& draw, int threads);
 

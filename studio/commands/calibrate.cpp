@@ -5,6 +5,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/model/errors.h"
 #include "scenes/presets.h"
 #include "studio/calibrate/block.h"
 #include "studio/calibrate/report.h"
@@ -33,7 +34,7 @@ Result<std::vector<calibrate::Measurement>> read_all(const std::vector<std::stri
     const Result<std::vector<calibrate::Measurement>> read =
         text ? calibrate::read_measurements(*text, file) : text.errors();
     if (read) all.insert(all.end(), read->begin(), read->end());
-    add_errors(read, errors);
+    append(errors, read);
   }
   if (!errors.empty()) return errors;
   return all;
@@ -74,16 +75,16 @@ std::optional<loading::LoadedScene> block_of(const CalibrateArguments& arguments
   Result<loading::LoadedScene> block =
       calibrate::make_block(kScenes, start_of(arguments), {size[0], size[1], size[2]}, arguments.sphere_mm);
   if (block) return std::move(*block);
-  add_errors(block, errors);
+  append(errors, block);
   return {};
 }
 
 int run_calibrate(const CalibrateArguments& arguments) {
   const Result<std::vector<calibrate::Measurement>> measurements = read_all(arguments.files);
   Errors errors;
-  add_errors(measurements, errors);
+  append(errors, measurements);
   const std::optional<loading::LoadedScene> block = block_of(arguments, errors);
-  add_errors(reports::check_folder(arguments.folder), errors);
+  append(errors, reports::check_folder(arguments.folder));
   if (!errors.empty()) return print_errors(errors);
   const Result<loading::LoadedScene> rig = loading::load_whole_scene(kScenes + "/paper/rig-liver.json");
   if (!rig) return print_errors(rig.errors());

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/errors.h"
 #include "scenes/course.h"
 #include "studio/cohort/gather.h"
 #include "studio/commands/command.h"
@@ -25,8 +26,7 @@ Errors errors_of_scripts(const CheckArguments& arguments, const std::string& sce
   const Result<scenes::SceneDraft> draft = scenes::load_draft(scene, arguments.load);
   Errors all;
   for (const std::string& script : arguments.scripts) {
-    const Errors errors = sources::check_script(script, draft ? *draft : scenes::unknown_scene(scene));
-    all.insert(all.end(), errors.begin(), errors.end());
+    append(all, sources::check_script(script, draft ? *draft : scenes::unknown_scene(scene)));
   }
   return all;
 }
@@ -42,8 +42,8 @@ bool is_good_course(const std::string& path, const scenes::LoadOptions& load) {
   if (!course) return print_errors(course.errors()), false;
   const cohort::SceneFindings scenes = cohort::find_other_scenes(*course, load);
   Errors errors;
-  add_errors(cohort::check_experts(*course), errors);
-  errors.insert(errors.end(), scenes.errors.begin(), scenes.errors.end());
+  append(errors, cohort::check_experts(*course));
+  append(errors, scenes.errors);
   if (!errors.empty()) return print_errors(errors), false;
   print_warnings(scenes.warnings);
   const std::size_t tasks = course->tasks.size();
@@ -65,8 +65,8 @@ int run_check(const CheckArguments& arguments) {
     const Errors of_scripts = errors_of_scripts(arguments, path);
     const Result<loading::LoadedScene> scene = loading::load_whole_scene(path, arguments.load);
     if (!scene || !of_scripts.empty()) {
-      Errors errors = scene ? Errors{} : scene.errors();
-      errors.insert(errors.end(), of_scripts.begin(), of_scripts.end());
+      Errors errors;
+      append(errors, scene), append(errors, of_scripts);
       code = print_errors(errors);
       continue;
     }

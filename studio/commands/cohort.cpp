@@ -4,6 +4,7 @@
 #include <string>
 #include <thread>
 
+#include "core/model/errors.h"
 #include "scenes/course.h"
 #include "studio/cohort/pages.h"
 #include "studio/commands/command.h"
@@ -64,8 +65,9 @@ void print_cohort(const cohort::Cohort& cohort) {
 int run_cohort(const CohortArguments& arguments) {
   const Result<scenes::CourseSpec> course = course_of(arguments);
   Errors errors;
-  add_errors(course, errors);
-  add_errors(reports::check_folder(arguments.folder, cohort::kFirstPage), errors);
+  append(errors, course);
+  append(errors, reports::check_folder(arguments.folder, cohort::kFirstPage));
+  if (!errors.empty() && course) append(errors, cohort::gather(*course, arguments.trainees));
   if (!errors.empty()) return print_errors(errors);
   cohort::CohortOptions options;
   options.verify = arguments.verify;
@@ -74,7 +76,8 @@ int run_cohort(const CohortArguments& arguments) {
   options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
   const Result<cohort::Cohort> measured = cohort::measure_cohort(*course, arguments.trainees, options);
   if (!measured) return print_errors(measured.errors());
-  if (arguments.experts.empty()) {
+  // A scene that was changed since the experts worked in it is why sessions are of no task; else `check` says so.
+  if (arguments.experts.empty() && !measured->left_out.empty()) {
     const cohort::SceneFindings scenes = cohort::find_other_scenes(*course);
     print_warnings(scenes.errors), print_warnings(scenes.warnings);
   }

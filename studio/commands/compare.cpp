@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "core/model/errors.h"
 #include "studio/commands/command.h"
 #include "studio/commands/comparison_text.h"
 #include "studio/commands/console.h"
@@ -54,10 +55,10 @@ Result<compare::ComparedFiles> compare_opened(compare::OpenedFiles files, const 
 int run_compare(const CompareArguments& arguments) {
   Result<compare::OpenedFiles> opened = compare::open_files(arguments.expert, arguments.trainee);
   Errors errors;
-  add_errors(opened, errors);
+  append(errors, opened);
   if (arguments.has_force_limit && !(arguments.force_limit_n > 0))
     errors.push_back({"--force-limit", "must be above 0 N", ""});
-  if (!arguments.folder.empty()) add_errors(reports::check_folder(arguments.folder), errors);
+  if (!arguments.folder.empty()) append(errors, reports::check_folder(arguments.folder));
   if (!errors.empty()) return print_errors(errors);
   warn_of_physics(opened->expert), warn_of_physics(opened->trainee);
   Result<compare::ComparedFiles> files = compare_opened(*std::move(opened), arguments);

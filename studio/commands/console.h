@@ -19,12 +19,6 @@ enum ExitCode : int {
 /// Prints errors to stderr, one per line, with flags instead of option names; returns exit_bad_input.
 int print_errors(const Errors& errors);
 
-/// Adds the errors of what failed to those that are printed together; nothing if it did not fail.
-template <class T>
-void add_errors(const Result<T>& result, Errors& errors) {
-  if (!result) errors.insert(errors.end(), result.errors().begin(), result.errors().end());
-}
-
 /// Prints the warnings of a scene to stderr, one per line.
 void print_warnings(const Errors& warnings);
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/errors.h"
 #include "recordings/session_reader.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
@@ -110,8 +111,7 @@ Errors check_arguments(const ExportArguments& arguments) {
   const bool is_many = arguments.files.size() > 1, is_picture = is_sheet(arguments.output);
   if (arguments.at_s && !is_picture)
     errors.push_back({"--at-s", "is for .png, .vtp, .vtu and .glb, which hold one moment", ""});
-  if (is_picture)
-    for (const Error& error : check_pair(arguments, " is a picture of one session")) errors.push_back(error);
+  if (is_picture) append(errors, check_pair(arguments, " is a picture of one session"));
   for (const auto& [flag, other] : {std::pair{"--beside", &arguments.beside}, {"--ghost", &arguments.ghost}})
     if (is_many && !other->empty()) errors.push_back({flag, "is for one session, and several are given", ""});
   if (!arguments.align.empty() && arguments.beside.empty() && arguments.ghost.empty())
@@ -149,7 +149,7 @@ Result<std::vector<recordings::SessionReader>> open_all(const std::vector<std::s
     if (reader)
       warn_of_physics(*reader), readers.push_back(std::move(*reader));
     else
-      errors.insert(errors.end(), reader.errors().begin(), reader.errors().end());
+      append(errors, reader);
   }
   if (!errors.empty()) return errors;
   return readers;
@@ -167,7 +167,7 @@ int run_many(const ExportArguments& arguments) {
   }
   std::error_code failed;
   if (std::filesystem::exists(folder, failed))
-    add_errors(output::check_new(table_path, arguments.options.overwrite), errors);
+    append(errors, output::check_new(table_path, arguments.options.overwrite));
   if (!errors.empty()) return print_errors(errors);
   std::filesystem::create_directories(folder, failed);
   if (failed) return print_errors({{arguments.output, "cannot be made: " + failed.message(), ""}});
@@ -209,7 +209,7 @@ int run_export(ExportArguments& arguments) {
   if (size)
     arguments.options.size = *size;
   else
-    errors.insert(errors.end(), size.errors().begin(), size.errors().end());
+    append(errors, size);
   const StopSignal stop;  // Ctrl-C ends the loop, and the unfinished file is removed on the way out
   arguments.options.should_stop = [&] { return stop.came(); };
   if (arguments.files.size() > 1) return errors.empty() ? run_many(arguments) : print_errors(errors);

@@ -1,6 +1,7 @@
 #include <memory>
 #include <string>
 
+#include "scenes/presets.h"
 #include "studio/authoring/fit_stiffness.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
@@ -26,16 +27,26 @@ Result<std::size_t> find_organ(const scenes::SceneSpec& scene, const std::string
   return Error{"--organ", "the scene has no organ '" + name + "'", "it has: " + known};
 }
 
+/// Whether the paper's Table 1 has the forces of a material.
+bool is_of_table(const scenes::MaterialSpec& material) {
+  const scenes::MaterialPreset* preset = scenes::find_preset(material.preset);
+  return preset && preset->is_of_paper && !material.spring && !material.kelvin && !material.constraint;
+}
+
 void print_fit(const scenes::OrganSpec& organ, const authoring::StiffnessFit& fit) {
   const scenes::FittedForSpec& f = fit.fitted_for;
   print("%s: stiffness_scale %.6g\n", organ.name.c_str(), fit.scale);
   print("fitted with a ball of %.2f mm on spheres of %.2f mm, around (%.2f, %.2f, %.2f) mm\n\n", 1e3 * f.ball_radius,
         1e3 * f.sphere_radius, 1e3 * f.place.x, 1e3 * f.place.y, 1e3 * f.place.z);
-  print("depth [mm]   force [N]   scatter [%%]   Table 1, CTPM [N]   error [%%]\n");
+  const bool is_printed = is_of_table(organ.material);
+  print("depth [mm]   force [N]   scatter [%%]   %s [N]   error [%%]\n",
+        is_printed ? "Table 1, CTPM" : "closed form  ");
   for (const authoring::FitRow& row : fit.rows)
     print("%10.0f %11.4f %13.1f %19.4f %11.1f\n", 1e3 * row.depth, row.force, 100 * row.scatter, row.closed_form,
           100 * row.error());
   print("\nThe scale is fitted at 12 mm only; the other depths show how the shape of the curve differs.\n");
+  if (!is_printed)
+    print("The paper has no forces of this material: the closed form is that of its five spheres with these moduli.\n");
 }
 
 int run_fit(const FitArguments& arguments) {

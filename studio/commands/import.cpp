@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/errors.h"
 #include "importers/import.h"
 #include "importers/label_map.h"
 #include "scenes/anchors.h"
@@ -112,7 +113,7 @@ Errors complete(ImportArguments& a) {
     else
       errors.push_back({"--anchor", anchor.errors().front().message, ""});
   }
-  if (!a.report.empty()) add_errors(output::check_new(a.report, r.overwrite), errors);
+  if (!a.report.empty()) append(errors, output::check_new(a.report, r.overwrite));
   return errors;
 }
 

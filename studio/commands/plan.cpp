@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/errors.h"
 #include "core/model/fields.h"
 #include "core/stepping/step.h"
 #include "importers/text.h"
@@ -392,8 +393,7 @@ int run_plan(const PlanArguments& arguments) {
   else if (const Result<Done> measured = measure(arguments, plan); !measured)
     return print_errors(measured.errors());
   if (plan.cost && !arguments.script.empty())
-    for (Error& miss : find_misses(*steps, *plan.cost, model, arguments.script))
-      plan.oddities.push_back(std::move(miss));
+    append(plan.oddities, find_misses(*steps, *plan.cost, model, arguments.script));
   print_warnings(plan.oddities);
   const std::string solver = solver_of(model, scene->built.integrator);
   if (arguments.json)

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/errors.h"
 #include "scenes/places.h"
 #include "scenes/script.h"
 #include "studio/commands/command.h"
@@ -46,10 +47,10 @@ Result<std::optional<scenes::Script>> script_of(const PreviewArguments& argument
 int run_preview(PreviewArguments arguments) {
   const Result<render::PictureSize> size = render::parse_picture_size(arguments.size);
   Errors errors;
-  add_errors(size, errors);
-  add_errors(output::check_new(arguments.output, arguments.overwrite), errors);
+  append(errors, size);
+  append(errors, output::check_new(arguments.output, arguments.overwrite));
   const Result<loading::LoadedScene> scene = loading::load_whole_scene(arguments.scene, arguments.load);
-  add_errors(scene, errors);
+  append(errors, scene);
   if (!errors.empty()) return print_errors(errors);
   print_warnings(scene->scene.warnings);
   // With --spheres the surface stands on the left half and the layered spheres on the right.

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "core/model/errors.h"
 #include "importers/text.h"
+#include "recordings/session_reader.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/commands/extremes_text.h"
@@ -19,7 +21,6 @@
 #include "studio/session/recent_times.h"
 #include "studio/session/record_session.h"
 #include "studio/session/tick_times.h"
-#include "studio/sources/open_file.h"
 
 namespace ctpm::commands {
 namespace {
@@ -51,7 +52,7 @@ Errors check(const RecordArguments& arguments) {
     errors.push_back({"--continue", "needs a source: one of " + sources, ""});
   if (arguments.as_fast_as_possible && devices::asks_for_device(arguments.source.device))
     errors.push_back({"--fast", "a device is followed in real time", ""});
-  for (Error& error : devices::check_device(arguments.source.device)) errors.push_back(std::move(error));
+  append(errors, devices::check_device(arguments.source.device));
   for (Error& error : devices::check_device(second_of(arguments.source)))
     if (std::find(errors.begin(), errors.end(), error) == errors.end()) errors.push_back(std::move(error));
   if (devices::asks_for_device(arguments.source.second) && !devices::asks_for_device(arguments.source.device))
@@ -61,7 +62,7 @@ Errors check(const RecordArguments& arguments) {
       errors.push_back({flag, "is of a device, and none is asked for", "give --igtl or --igtl-listen"});
   std::error_code ignored;
   if (const Result<Done> writable = output::check_writable(arguments.output); !writable)
-    errors.insert(errors.end(), writable.errors().begin(), writable.errors().end());
+    append(errors, writable);
   else if (!arguments.overwrite && std::filesystem::exists(arguments.output, ignored))
     errors.push_back({arguments.output, "exists already", "--overwrite replaces it"});
   return errors;
@@ -73,14 +74,34 @@ struct Beginning {
   std::optional<scenes::Script> script;
 };
 
-/// The errors of the given script, and those of the scene's text: all that can be said before the scene is filled.
-Errors errors_before_filling(const RecordArguments& arguments) {
-  const Result<scenes::SceneDraft> draft = scenes::load_draft(arguments.scene, arguments.load);
-  if (arguments.source.script.empty() || !draft) return {};
-  Errors errors = sources::check_script(arguments.source.script, *draft);
-  if (errors.empty()) return {};
-  Errors all = draft->problems.errors();
-  all.insert(all.end(), errors.begin(), errors.end());
+/// The errors of the flags and of the given files but for the scene's: those of its text come with those of its meshes,
+/// unless there are others. Reads the script.
+Errors errors_beside_scene(RecordArguments& arguments, const Result<scenes::SceneDraft>& scene) {
+  Errors errors = check(arguments);
+  SourceRequest& source = arguments.source;
+  if (!source.script.empty()) {
+    const Result<std::string> text = output::read_text_file(source.script);
+    source.script_text = text ? *text : "";
+    append(errors,
+           text ? scenes::check_script(*text, source.script, scene ? *scene : scenes::unknown_scene(arguments.scene))
+                : text.errors());
+  }
+  if (!source.motion.empty()) append(errors, output::check_readable(source.motion));
+  if (!arguments.parent.empty()) append(errors, recordings::SessionReader::open(arguments.parent));
+  return errors;
+}
+
+/// Opens the devices first, so that a port in use is reported at once and a device can connect early. Errors: all that
+/// can be said before the scene is filled.
+Result<OpenedDevices> check_and_open(RecordArguments& arguments) {
+  const Result<scenes::SceneDraft> scene = scenes::load_draft(arguments.scene, arguments.load);
+  Errors errors = errors_beside_scene(arguments, scene);
+  Result<OpenedDevices> devices = errors.empty() ? open_devices(arguments.source) : OpenedDevices{};
+  append(errors, devices);
+  if (errors.empty()) return devices;
+  Errors all;
+  if (!arguments.scene.empty()) all = scene ? scene->problems.errors() : scene.errors();
+  append(all, std::move(errors));
   return all;
 }
 
@@ -92,7 +113,6 @@ Result<Beginning> begin(const RecordArguments& arguments) {
     beginning.start = std::move(*start);
     return beginning;
   }
-  if (Errors errors = errors_before_filling(arguments); !errors.empty()) return errors;
   const Result<loading::LoadedScene> scene = loading::load_whole_scene(arguments.scene, arguments.load);
   if (!scene) return scene.errors();
   print_warnings(scene->scene.warnings);
@@ -136,12 +156,10 @@ bool wait_for(const FollowedPlace& one, const std::function<bool()>& should_stop
                                          [&](const std::string& text) { print_remark(one.place + ": " + text); });
 }
 
-int run_record(const RecordArguments& arguments) {
-  if (const Errors errors = check(arguments); !errors.empty()) return print_errors(errors);
+int run_record(RecordArguments arguments) {
   const StopSignal stop;
   const auto should_stop = [&] { return stop.came(); };
-  // Opened first, so that a port in use is reported at once and a device can connect early.
-  Result<OpenedDevices> devices = open_devices(arguments.source);
+  Result<OpenedDevices> devices = check_and_open(arguments);
   if (!devices) return print_errors(devices.errors());
   Result<Beginning> beginning = begin(arguments);
   if (!beginning) return print_errors(beginning.errors());
@@ -174,6 +192,7 @@ int run_record(const RecordArguments& arguments) {
         progress.add("tick p99 " + output::fixed(1e3 * times.p99(), 2) + " ms, clock " + output::fixed(so_far.slip, 3) +
                      " s behind");
     };
+    options.note = [&](const std::string& text) { print_remark(arguments.output + ": warning: " + text); };
     options.tell = [&](const std::string& problem) {
       print_remark(arguments.output + ": error: recording fails now: " + problem);
     };

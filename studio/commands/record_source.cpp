@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/model/errors.h"
 #include "studio/commands/console.h"
 #include "studio/sources/open_file.h"
 
@@ -75,12 +76,15 @@ std::vector<std::string> given_device_flags(const CLI::App& app) {
 
 Result<OpenedDevices> open_devices(const SourceRequest& request) {
   OpenedDevices opened;
-  Result<devices::OpenedDevice> first = devices::open_device(request.device);
-  if (!first) return first.errors();
-  opened[0] = std::move(*first);
-  Result<devices::OpenedDevice> second = devices::open_device(second_of(request));
-  if (!second) return second.errors();
-  opened[1] = std::move(*second);
+  Errors errors;
+  for (std::size_t hand = 0; hand < kMostHands; ++hand) {
+    Result<devices::OpenedDevice> device = devices::open_device(hand == 0 ? request.device : second_of(request));
+    if (device)
+      opened[hand] = std::move(*device);
+    else
+      append(errors, device);
+  }
+  if (!errors.empty()) return errors;
   return opened;
 }
 
@@ -113,9 +117,10 @@ Result<ReadySource> open_source(const SourceRequest& request, OpenedDevices devi
     return ReadySource{std::move(followed->source), {{source, devices[0].place}}, std::move(followed->metadata)};
   }
   if (otherwise) print_remark("no source is given: pressing and cutting at the top of the first organ");
-  Result<sources::OpenedSource> opened = otherwise                ? sources::play_script(*otherwise, model)
-                                         : request.script.empty() ? sources::open_motion(request.motion, model)
-                                                                  : sources::open_script(request.script, model, scene);
+  Result<sources::OpenedSource> opened =
+      otherwise                ? sources::play_script(*otherwise, model)
+      : request.script.empty() ? sources::open_motion(request.motion, model)
+                               : sources::read_script_source(request.script_text, request.script, model, scene);
   if (!opened) return opened.errors();
   for (const std::string& remark : opened->remarks) print_remark(remark);
   return ReadySource{std::move(opened->source), {}, std::move(opened->metadata)};

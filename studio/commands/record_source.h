@@ -18,8 +18,9 @@ namespace ctpm::commands {
 
 /// The requested source: at most one of script, motion and device is set.
 struct SourceRequest {
-  std::string script;  ///< file of a script
-  std::string motion;  ///< file of a motion
+  std::string script;       ///< file of a script
+  std::string script_text;  ///< of that file, read once: it may be a pipe
+  std::string motion;       ///< file of a motion
   devices::DeviceRequest device;
   devices::DeviceRequest second;  ///< of the second hand; only beside `device`
 };

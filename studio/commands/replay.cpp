@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/model/nearest_rank.h"
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
-#include "studio/bench/bench.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/commands/extremes_text.h"
@@ -40,7 +40,7 @@ class LeastTimes {
 
   /// `tick`: how long one may take [s].
   std::string text(int times, double tick) const {
-    const auto ms = [&](double share) { return output::fixed(1e3 * bench::percentile(least_, share), 3); };
+    const auto ms = [&](double share) { return output::fixed(1e3 * percentile(least_, share), 3); };
     const auto above = std::count_if(least_.begin(), least_.end(), [&](double time) { return time > tick; });
     return "least time of each tick over " + std::to_string(times) + " replays: p50 " + ms(0.5) + " ms, p99 " +
            ms(0.99) + " ms, p99.9 " + ms(0.999) + " ms, max " + ms(1) + " ms, " + std::to_string(above) + " of " +

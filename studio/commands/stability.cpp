@@ -2,6 +2,7 @@
 #include <memory>
 #include <string>
 
+#include "core/model/errors.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/reports/report.h"
@@ -55,8 +56,8 @@ void print_runs(const std::vector<stability::StabilityRow>& rows) {
 int run_stability_command(const StabilityArguments& arguments) {
   const Result<std::vector<stability::StabilityCase>> cases = chosen_cases(arguments);
   Errors errors;
-  add_errors(cases, errors);
-  add_errors(reports::check_folder(arguments.folder), errors);
+  append(errors, cases);
+  append(errors, reports::check_folder(arguments.folder));
   if (!errors.empty()) return print_errors(errors);
   const std::vector<stability::StabilityRow> rows = [&] {
     ProgressLine progress("running the stability cases");

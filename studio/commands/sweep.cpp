@@ -6,12 +6,14 @@
 #include <string>
 #include <thread>
 
+#include "core/model/errors.h"
 #include "importers/text.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/commands/stop_signal.h"
 #include "studio/output/number_text.h"
 #include "studio/output/printable.h"
+#include "studio/reports/report.h"
 #include "studio/sweep/collect.h"
 #include "studio/sweep/each.h"
 #include "studio/sweep/plan.h"
@@ -45,7 +47,11 @@ Result<sweep::Plan> make_plan(const SweepArguments& arguments) {
 
 int plan_sweep(const SweepArguments& arguments) {
   const Result<sweep::Plan> plan = make_plan(arguments);
-  if (!plan) return print_errors(plan.errors());
+  if (!plan) {
+    Errors errors = plan.errors();
+    append(errors, reports::check_folder(arguments.folder));
+    return print_errors(errors);
+  }
   if (const Result<Done> written = sweep::write_plan(*plan, arguments.folder); !written)
     return print_errors(written.errors());
   std::size_t finished = 0;
@@ -74,7 +80,24 @@ int show_status(const SweepArguments& arguments) {
   return print_state(arguments.folder, *collection);
 }
 
+/// A slice of which no session is in the plan is a mistake: an element of a job array would do nothing, and say
+/// nothing.
+Errors check_slice(const SweepArguments& arguments) {
+  Errors errors;
+  if (arguments.from && arguments.to && *arguments.from > *arguments.to)
+    errors.push_back({"--from", "is beyond --to", "both are numbers of sessions in manifest.csv"});
+  const Result<sweep::Plan> plan = sweep::read_plan(arguments.folder);
+  append(errors, plan);
+  if (plan && arguments.from && *arguments.from > plan->tasks.size())
+    errors.push_back({"--from",
+                      "got " + std::to_string(*arguments.from) + ", and the plan has " +
+                          importers::counted(std::int64_t(plan->tasks.size()), "session"),
+                      ""});
+  return errors;
+}
+
 int run_here(const SweepArguments& arguments) {
+  if (const Errors errors = check_slice(arguments); !errors.empty()) return print_errors(errors);
   const StopSignal stop;
   sweep::RunRequest request;
   request.folder = arguments.folder;

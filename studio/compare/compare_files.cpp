@@ -5,6 +5,7 @@
 #include <mutex>
 #include <utility>
 
+#include "core/model/errors.h"
 #include "scenes/scene_file.h"
 #include "studio/compare/slip.h"
 #include "studio/loading/loaded_scene.h"
@@ -15,8 +16,7 @@ Result<OpenedFiles> open_files(const std::string& expert, const std::string& tra
   Result<recordings::SessionReader> a = recordings::SessionReader::open(expert);
   Result<recordings::SessionReader> b = recordings::SessionReader::open(trainee);
   Errors errors;
-  for (const auto* session : {&a, &b})
-    if (!*session) errors.insert(errors.end(), session->errors().begin(), session->errors().end());
+  for (const auto* session : {&a, &b}) append(errors, *session);
   if (!errors.empty()) return errors;
   if (const Result<Done> same = check_same_scene(*a, *b); !same) return same.errors();
   return OpenedFiles{std::move(*a), std::move(*b)};
@@ -55,8 +55,7 @@ Result<ComparedFiles> compare_files(OpenedFiles files, const CompareFilesOptions
       std::async(std::launch::async, [&] { return read_track(files.expert, how.replaying, progress.of(0)); });
   Result<SessionTrack> trainee = read_track(files.trainee, how.replaying, progress.of(1)), expert = other.get();
   Errors errors;
-  for (const auto* track : {&expert, &trainee})
-    if (!*track) errors.insert(errors.end(), track->errors().begin(), track->errors().end());
+  for (const auto* track : {&expert, &trainee}) append(errors, *track);
   if (!errors.empty()) return errors;
   // What a replay reports is what was recorded, to the bit, where somebody has replayed all of it.
   if (how.is_expert_known) expert->is_verified = expert->replays;

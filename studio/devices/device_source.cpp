@@ -58,8 +58,11 @@ bool DeviceSource::take_reports(double now) {
   const std::int64_t refused_before = guard_.counts().refused + guard_.counts().unread;
   // Those of a flood are left for the next ticks: a tick never waits for a sender.
   DeviceReport report;
-  for (int i = 0; i < kMostReports && device_->next(report); ++i)
-    if (guard_.take(report)) has_new_pose = true, waits_.add(now - report.arrival), ways_.add(report.on_way);
+  for (int i = 0; i < kMostReports && device_->next(report); ++i) {
+    if (!guard_.take(report)) continue;
+    has_new_pose = true, waits_.add(now - report.arrival), ways_.add(report.on_way);
+    if (settings_.may_mean_metres) unit_.add(settings_.map.scale * guard_.pose().position, report.arrival);
+  }
   saw_fault_ = guard_.counts().refused + guard_.counts().unread != refused_before;
   return has_new_pose;
 }
@@ -108,6 +111,15 @@ std::optional<Inputs> DeviceSource::next(std::int64_t, const stepping::StepRepor
   inputs.position = coupling_.tool().position;
   inputs.world_from_tool = coupling_.tool().orientation;
   return inputs;
+}
+
+std::vector<recordings::Event> DeviceSource::take_events() {
+  std::vector<recordings::Event> events = guard_.take_events();
+  if (unit_.take_suspicion())
+    events.push_back({.kind = recordings::EventKind::note,
+                      .text = "all places of the hand so far lie within 2 mm of the device's origin: OpenIGTLink means "
+                              "millimetres, and a device that sends metres needs a scale of 1000"});
+  return events;
 }
 
 /// Answers every good pose with a force. While poses are refused the hand's position is unknown, and the force is zero.

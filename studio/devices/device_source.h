@@ -10,6 +10,7 @@
 #include "studio/devices/device.h"
 #include "studio/devices/device_guard.h"
 #include "studio/devices/device_map.h"
+#include "studio/devices/unit_watch.h"
 #include "studio/devices/virtual_coupling.h"
 #include "studio/devices/wait_times.h"
 #include "studio/sources/input_source.h"
@@ -20,7 +21,8 @@ struct DeviceSettings {
   DeviceMap map;
   GuardSettings guard;
   CouplingSettings coupling;
-  double most_force = 3;  ///< largest force sent to the device [N], > 0
+  double most_force = 3;         ///< largest force sent to the device [N], > 0
+  bool may_mean_metres = false;  ///< it sends numbers without a unit, which its maker may take for metres
 };
 
 /// A device as the source of a session. Its samples are checked, mapped into the scene and interpolated over the ticks
@@ -39,7 +41,7 @@ class DeviceSource : public sources::InputSource {
 
   std::optional<Inputs> next(std::int64_t tick, const stepping::StepReport& last) override;
   double input_age() const override { return age_; }
-  std::vector<recordings::Event> take_events() override { return guard_.take_events(); }
+  std::vector<recordings::Event> take_events() override;
   std::vector<recordings::NamedValue> statistics() const override;
   std::string fault() const override { return guard_.verdict(); }
 
@@ -53,6 +55,7 @@ class DeviceSource : public sources::InputSource {
   double tick_;  ///< [s]
   Clock clock_;
   DeviceGuard guard_;
+  UnitWatch unit_;
   VirtualCoupling coupling_;
   PassiveForce passive_;
   std::int32_t tool_ = -1;

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/model/errors.h"
 #include "core/stepping/step.h"
 #include "studio/devices/igtl_link.h"
 #include "studio/output/option_name.h"
@@ -194,6 +195,7 @@ Result<FollowedDevice> follow_device(const DeviceRequest& request, std::unique_p
   settings.coupling.stiffness = request.stiffness_n_per_m;
   settings.coupling.most_force = request.gives_way_n, settings.coupling.most_depth = 1e-3 * request.gives_way_mm;
   settings.most_force = request.most_force_n;
+  settings.may_mean_metres = asks_for_device(request);
   FollowedDevice followed;
   followed.source = std::make_unique<DeviceSource>(std::move(device), settings, model.tick);
   followed.metadata = {{"source", request.listen_port ? "igtl-listen" : "igtl"}, {"device", describe(request, *map)}};
@@ -218,8 +220,7 @@ Result<FollowedPair> follow_devices(const DeviceRequest& first, std::unique_ptr<
         {output::option_name("second.address"), "the scene has one hand", "write \"hands\": 2 in the scene"});
   Result<FollowedDevice> a = follow_device(first, std::move(first_device), model);
   Result<FollowedDevice> b = follow_device(second, std::move(second_device), model);
-  for (const auto* followed : {&a, &b})
-    if (!*followed) errors.insert(errors.end(), followed->errors().begin(), followed->errors().end());
+  for (const auto* followed : {&a, &b}) append(errors, *followed);
   if (!errors.empty()) return errors;
   const bool may_change = !first.buttons.empty() || !second.buttons.empty();
   const std::string conflict(stepping::hands_conflict(model, map_of(first, model)->tool, map_of(second, model)->tool));

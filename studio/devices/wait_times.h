@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <numeric>
 
+#include "core/model/nearest_rank.h"
+
 namespace ctpm::devices {
 
 /// Counts how long samples waited until a tick took them, in bins of 0.1 ms; adding allocates nothing.
@@ -28,10 +30,11 @@ class WaitTimes {
 
   /// The end of the bin in which the smallest wait lies that a `share` of all do not exceed [s]; 0: there was none.
   double at(double share) const {
-    const auto rank = std::max<std::int64_t>(1, std::int64_t(std::ceil(share * double(count_))));
+    if (count_ == 0) return 0;
+    const auto place = std::int64_t(nearest_rank(share, std::size_t(count_)));
     std::int64_t seen = 0;
     for (std::size_t i = 0; i < bins_.size(); ++i)
-      if ((seen += bins_[i]) >= rank) return kBin * double(i + 1);
+      if ((seen += bins_[i]) > place) return kBin * double(i + 1);
     return 0;
   }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/model/errors.h"
 #include "recordings/byte_hash.h"
 #include "studio/film/captions.h"
 #include "studio/film/reel.h"
@@ -20,8 +21,6 @@
 
 namespace ctpm::film {
 namespace {
-
-void append(Errors& errors, const Errors& more) { errors.insert(errors.end(), more.begin(), more.end()); }
 
 /// Where a video's sidecar lies: beside the file, or in the folder of pictures.
 std::string sidecar_of(const std::string& video) {
@@ -46,7 +45,7 @@ Errors check_options(const std::string& path, const ExportOptions& options) {
   for (const std::string& file : {path, sidecar_of(path)})
     if (!path.ends_with('/'))
       if (const Result<Done> is_new = output::check_new(file, options.overwrite); !is_new) {
-        append(errors, is_new.errors());
+        append(errors, is_new);
         break;
       }
   for (Error& error : video::VideoWriter::check(path, options.size.width, options.size.height,
@@ -110,10 +109,10 @@ Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>
   std::vector<recordings::SessionReader*> in_step = sessions;
   if (options.ghost) in_step.push_back(options.ghost);
   const Result<std::vector<std::array<double, 2>>> slow = slow_parts_of(in_step, options.slow_at);
-  if (!slow) append(errors, slow.errors());
+  append(errors, slow);
   Result<std::vector<FrameTicks>> ticks =
       schedule(in_step, {options.range, frame_s, options.matched, slow ? *slow : std::vector<std::array<double, 2>>()});
-  if (!ticks) append(errors, ticks.errors());
+  append(errors, ticks);
   const int width = options.size.width / int(sessions.size());
   std::vector<Reel> reels;
   for (std::size_t i = 0; i < sessions.size(); ++i) {
@@ -123,7 +122,7 @@ Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>
     if (reel)
       reels.push_back(std::move(*reel));
     else
-      append(errors, reel.errors());
+      append(errors, reel);
   }
   if (!errors.empty()) return errors;
   if (options.ghost) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/model/nearest_rank.h"
+
 namespace ctpm::loading {
 namespace {
 
@@ -15,14 +17,6 @@ double processor_time() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
-
-/// The value that this share of them does not exceed; 0 of none.
-double part_of(std::vector<double>& values, double share) {
-  if (values.empty()) return 0;
-  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
 }
 
 class Trial {
@@ -69,7 +63,7 @@ class Trial {
   }
 
   ScriptTrial finished() {
-    trial_.usual_work = part_of(work_, 0.5), trial_.dearest_work = part_of(busy_, 0.99);
+    trial_.usual_work = percentile(work_, 0.5), trial_.dearest_work = percentile(busy_, 0.99);
     return trial_;
   }
 

@@ -44,10 +44,18 @@ void remove_left_behind(const std::string& path) {
 
 }  // namespace
 
+Result<Done> check_readable(const std::string& path) {
+  std::error_code failure;
+  const fs::file_status status = fs::status(path, failure);
+  if (status.type() == fs::file_type::not_found) return Error{path, "does not exist", ""};
+  if (status.type() == fs::file_type::directory) return Error{path, "is a folder, not a file", ""};
+  if (!failure && access(path.c_str(), R_OK) != 0) failure = std::error_code(errno, std::generic_category());
+  if (failure) return Error{path, "cannot be read: " + failure.message(), ""};
+  return Done{};
+}
+
 Result<std::string> read_text_file(const std::string& path) {
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) return Error{path, "does not exist", ""};
-  if (fs::is_directory(path, ignored)) return Error{path, "is a folder, not a file", ""};
+  if (const Result<Done> readable = check_readable(path); !readable) return readable.errors();
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();

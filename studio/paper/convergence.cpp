@@ -4,6 +4,7 @@
 #include <cmath>
 #include <future>
 
+#include "core/model/errors.h"
 #include "studio/output/number_text.h"
 #include "studio/paper/paper.h"
 
@@ -155,10 +156,10 @@ Result<Experiment> run_convergence(const std::string& scenes) {
     if (of_block)
       refined.push_back(std::move(*of_block));
     else
-      errors.insert(errors.end(), of_block.errors().begin(), of_block.errors().end());
+      append(errors, of_block);
   }
   const Result<Refinement> of_liver = other.get();
-  if (!of_liver) errors.insert(errors.end(), of_liver.errors().begin(), of_liver.errors().end());
+  append(errors, of_liver);
   if (!errors.empty()) return errors;
 
   Experiment experiment;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/model/errors.h"
 #include "core/model/result.h"
 
 namespace ctpm::paper {
@@ -28,7 +29,7 @@ Result<std::vector<T>> run_jobs(std::size_t count, const std::function<Result<T>
     if (*result)
       values.push_back(std::move(**result));
     else
-      errors.insert(errors.end(), result->errors().begin(), result->errors().end());
+      append(errors, *result);
   }
   if (!errors.empty()) return errors;
   return values;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "core/model/errors.h"
+
 namespace ctpm::paper {
 namespace {
 
@@ -46,9 +48,7 @@ Result<loading::LoadedScene> load_experiment(const std::string& scenes, const st
 
 Errors check_experiments(const std::string& scenes) {
   Errors errors;
-  for (const Need& need : kNeeds)
-    if (const Result<loading::LoadedScene> scene = load_experiment(scenes, need.name); !scene)
-      errors.insert(errors.end(), scene.errors().begin(), scene.errors().end());
+  for (const Need& need : kNeeds) append(errors, load_experiment(scenes, need.name));
   return errors;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/model/errors.h"
 #include "studio/paper/paper.h"
 
 namespace ctpm::paper {
@@ -170,7 +171,7 @@ Result<PaperResults> run_paper_experiments(const std::string& scenes,
     progress(std::int64_t(i), std::int64_t(runners.size()));
     Result<Experiment> experiment = runners[i]();
     if (!experiment) {
-      errors.insert(errors.end(), experiment.errors().begin(), experiment.errors().end());
+      append(errors, experiment);
       continue;
     }
     results.sections.push_back(std::move(experiment->section));

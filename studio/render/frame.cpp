@@ -3,8 +3,8 @@
 #include <png.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
+
+#include "studio/output/files.h"
 
 namespace ctpm::render {
 
@@ -65,17 +65,9 @@ Result<std::vector<std::uint8_t>> to_png(const Frame& frame) {
 Result<Done> write_png(const std::string& path, const Frame& frame) {
   if (frame.width <= 0 || frame.height <= 0) return Error{path, "the picture has no pixels", ""};
   if (!path.ends_with(".png")) return Error{path, "a picture's name must end in .png", ""};
-  const std::string part = path.substr(0, path.size() - 4) + ".part.png";
-  Png png(frame);
-  std::error_code failed;
-  const bool written = png_image_write_to_file(&png.image, part.c_str(), 0, frame.rgb.data(), 0, nullptr) != 0;
-  if (written) std::filesystem::rename(part, path, failed);
-  if (!written || failed) {
-    const std::string reason = failed ? failed.message() : png.image.message;
-    std::filesystem::remove(part, failed);
-    return Error{path, "the picture could not be written: " + reason, "check that the folder exists and is writable"};
-  }
-  return Done{};
+  const Result<std::vector<std::uint8_t>> png = to_png(frame);
+  if (!png) return png.errors();
+  return output::write_text_file(path, std::string(png->begin(), png->end()));
 }
 
 Result<Frame> read_png(const std::string& path) {

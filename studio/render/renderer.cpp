@@ -7,6 +7,7 @@
 #include <optional>
 #include <thread>
 
+#include "core/model/errors.h"
 #include "core/parallel/team.h"
 #include "studio/render/backdrop.h"
 #include "studio/render/edge_smoothing.h"
@@ -130,7 +131,7 @@ Result<Done> Renderer::Parts::create_programs() {
     if (made)
       program = *made;
     else
-      errors.insert(errors.end(), made.errors().begin(), made.errors().end());
+      append(errors, made);
   };
   make(tool, "tool", tool_shader()), make(sphere, "sphere", sphere_shader());
   make(rod, "rod", rod_shader());

@@ -1,5 +1,6 @@
 #include "studio/reports/report.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <vector>
@@ -148,13 +149,18 @@ Result<std::string> to_data_uri(const render::Frame& frame) {
 
 namespace {
 
+/// Whether this program wrote a page.
+bool is_own_page(const std::filesystem::path& page) {
+  std::string head(2000, '\0');
+  std::ifstream written(page, std::ios::binary);
+  written.read(head.data(), std::streamsize(head.size()));
+  return head.find(kGenerator) != std::string::npos;
+}
+
 /// The first file that a report would replace in a folder which holds no report of this program; empty if none.
 std::string file_of_others(const std::string& folder, const std::string& page) {
   const std::filesystem::path place = folder;
-  std::string head(2000, '\0');
-  std::ifstream written(place / page, std::ios::binary);
-  written.read(head.data(), std::streamsize(head.size()));
-  if (head.find(kGenerator) != std::string::npos) return "";
+  if (is_own_page(place / page)) return "";
   std::error_code ignored;
   for (const std::string& name : {page, std::string("results.json"), std::string("results.csv")})
     if (std::filesystem::exists(place / name, ignored)) return (place / name).string();
@@ -184,6 +190,19 @@ Result<Done> check_folder(const std::string& folder, const std::string& page) {
   const Result<Done> ready = prepare_folder(folder, page);
   for (const std::filesystem::path& place : missing) std::filesystem::remove(place, ignored);
   return ready;
+}
+
+void remove_old_pages(const std::string& folder, const std::string& begin, const std::vector<ReportFile>& files) {
+  std::error_code failure;
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failure)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_new = std::ranges::any_of(files, [&](const ReportFile& file) { return file.name == name; });
+    if (!is_new && name.starts_with(begin) && name.ends_with(".html") && entry.is_regular_file(failure) &&
+        is_own_page(entry.path()))
+      old.push_back(entry.path());
+  }
+  for (const std::filesystem::path& page : old) std::filesystem::remove(page, failure);
 }
 
 Result<Done> write_report(const std::string& folder, const std::vector<ReportFile>& files, const std::string& page) {

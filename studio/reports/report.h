@@ -80,6 +80,9 @@ Result<Done> prepare_folder(const std::string& folder, const std::string& page =
 /// be refused.
 Result<Done> check_folder(const std::string& folder, const std::string& page = "report.html");
 
+/// Removes the pages of an earlier report of this program whose names begin with `begin`, but for `files`.
+void remove_old_pages(const std::string& folder, const std::string& begin, const std::vector<ReportFile>& files);
+
 /// Writes each file under a temporary name, then renames it, so that no reader sees an incomplete file. Errors: those
 /// of output/files.h.
 Result<Done> write_report(const std::string& folder, const std::vector<ReportFile>& files,

@@ -19,13 +19,16 @@ namespace ctpm::server {
 /// What one page has open.
 class Desk {
  public:
-  /// `drop_upload` is called in the end for each upload that the page is in charge of.
+  /// `page`: the name that the page gave itself; empty: none. `drop_upload` is called in the end for each upload that
+  /// the page is in charge of.
   using DropUpload = std::function<void(const std::string& file)>;
-  Desk(std::shared_ptr<Outbox> outbox, DropUpload drop_upload)
-      : outbox_(std::move(outbox)), drop_upload_(std::move(drop_upload)) {}
+  Desk(std::string page, std::shared_ptr<Outbox> outbox, DropUpload drop_upload)
+      : page_(std::move(page)), outbox_(std::move(outbox)), drop_upload_(std::move(drop_upload)) {}
   ~Desk();
   Desk(const Desk&) = delete;
   Desk& operator=(const Desk&) = delete;
+
+  const std::string& page() const { return page_; }
 
   /// The way to the page.
   Outbox& outbox() { return *outbox_; }
@@ -85,6 +88,7 @@ class Desk {
   std::shared_ptr<Stage> stage(std::uint32_t number);
   std::shared_ptr<Training> training();
 
+  std::string page_;
   std::shared_ptr<Outbox> outbox_;
   DropUpload drop_upload_;
   std::mutex mutex_;

@@ -8,14 +8,23 @@ void Desks::add(const std::shared_ptr<Desk>& desk) {
   desks_.push_back(desk);
 }
 
+/// Those whose page is there; one that ends with the list does so outside of the lock.
+std::vector<std::shared_ptr<Desk>> Desks::open() {
+  std::vector<std::shared_ptr<Desk>> open;
+  const std::lock_guard lock(mutex_);
+  for (const std::weak_ptr<Desk>& one : desks_)
+    if (std::shared_ptr<Desk> desk = one.lock()) open.push_back(std::move(desk));
+  return open;
+}
+
+std::shared_ptr<Desk> Desks::of_page(const std::string& name) {
+  for (const std::shared_ptr<Desk>& desk : open())
+    if (!name.empty() && desk->page() == name) return desk;
+  return nullptr;
+}
+
 std::string Desks::use_of(const std::string& file, const Desk* own) {
-  std::vector<std::shared_ptr<Desk>> open;  // one that ends here does so outside of the lock
-  {
-    const std::lock_guard lock(mutex_);
-    for (const std::weak_ptr<Desk>& one : desks_)
-      if (std::shared_ptr<Desk> desk = one.lock()) open.push_back(std::move(desk));
-  }
-  for (const std::shared_ptr<Desk>& desk : open) {
+  for (const std::shared_ptr<Desk>& desk : open()) {
     if (desk->trains_in(file)) return "is being trained in; end that session first";
     if (desk.get() == own) continue;
     if (desk->shows_scene(file)) return "is open in another page; leave it there first";

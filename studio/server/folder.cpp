@@ -1,7 +1,11 @@
 #include "studio/server/folder.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <system_error>
 
 namespace ctpm::server {
 
@@ -29,8 +33,10 @@ double unix_seconds(fs::file_time_type time) {
 Result<Folder> Folder::open(const std::string& path) {
   std::error_code failure;
   const fs::path root = fs::canonical(path, failure);
-  if (failure) return Error{path, "does not exist", "create the folder first"};
-  if (!fs::is_directory(root, failure)) return Error{path, "is not a folder", ""};
+  if (failure == std::errc::no_such_file_or_directory) return Error{path, "does not exist", "create the folder first"};
+  if (!failure && !fs::is_directory(root, failure)) return Error{path, "is not a folder", ""};
+  if (!failure && access(root.c_str(), R_OK | X_OK) != 0) failure = std::error_code(errno, std::generic_category());
+  if (failure) return Error{path, "cannot be read: " + failure.message(), ""};
   return Folder(root);
 }
 

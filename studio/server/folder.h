@@ -23,7 +23,7 @@ double unix_seconds(std::filesystem::file_time_type time);
 /// or a link.
 class Folder {
  public:
-  /// Errors: it does not exist, or is no folder.
+  /// Errors: it does not exist, is no folder, or cannot be read.
   static Result<Folder> open(const std::string& path);
 
   /// The file of that relative path, after resolving links. Errors: it lies outside, or does not exist.

@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "studio/server/calls.h"
+#include "studio/server/file_moves.h"
+#include "studio/server/naming_files.h"
 #include "studio/server/page.h"
 #include "studio/server/subprotocol.h"
 #include "studio/server/text.h"
@@ -19,18 +21,22 @@ namespace http = beast::http;
 
 namespace {
 
+constexpr const char* kPage = "Ctpm-Page";  ///< header of an upload: the page with which it goes
+
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
-/// The token of an Authorization header, or of the second subprotocol of a WebSocket handshake.
+/// What follows `prefix` in a subprotocol of a WebSocket handshake: browsers let a page give no other headers there.
+std::string offered_behind(std::string_view prefix, const http::request<http::empty_body>& request) {
+  for (const auto& name : http::token_list(request[http::field::sec_websocket_protocol]))
+    if (view_of(name).starts_with(prefix)) return std::string(view_of(name).substr(prefix.size()));
+  return "";
+}
+
+/// The token of an Authorization header, or of a WebSocket handshake.
 std::string token_of(const http::request<http::empty_body>& request) {
-  constexpr std::string_view kBearer = "Bearer ", kPrefix = "token.";
+  constexpr std::string_view kBearer = "Bearer ";
   const std::string_view given = view_of(request[http::field::authorization]);
-  if (given.starts_with(kBearer)) return std::string(given.substr(kBearer.size()));
-  const std::string offered(view_of(request[http::field::sec_websocket_protocol]));
-  const std::size_t at = offered.find(kPrefix);
-  if (at == std::string::npos) return "";
-  const std::size_t from = at + kPrefix.size();
-  return offered.substr(from, offered.find_first_of(", ", from) - from);
+  return given.starts_with(kBearer) ? std::string(given.substr(kBearer.size())) : offered_behind("token.", request);
 }
 
 /// The subprotocol that a client offers: this program's version, if it is among them. Empty: none of any version.
@@ -122,7 +128,8 @@ void HttpConnection::take_head() {
     const std::string offered = subprotocol_of(request);
     if (offered.empty())
       return refuse(http::status::bad_request, "the WebSocket protocol must be " + std::string(kSubprotocol));
-    return std::make_shared<WebClient>(services_, std::move(stream_), std::move(counted_))->start(request, offered);
+    return std::make_shared<WebClient>(services_, std::move(stream_), std::move(counted_))
+        ->start(request, offered, offered_behind("page.", request));
   }
   const std::optional<std::string> upload = name_behind("/upload/", target), film = name_behind("/film/", target);
   if (upload && request.method() == http::verb::put) return take_upload(*upload);
@@ -190,25 +197,48 @@ void HttpConnection::take_upload(const std::string& name) {
   if (std::filesystem::exists(*place, ignored)) return refuse(http::status::conflict, name + " exists already");
   auto body = std::make_shared<http::request_parser<http::file_body>>(std::move(*head_));
   body->body_limit(services_.limits.most_upload);
-  const std::string part = *place + ".part-" + make_token().substr(0, 8);
+  const Upload upload{*place + ".part-" + make_token().substr(0, 8), *place, std::string(view_of(body->get()[kPage]))};
+  services_.listed.add(upload.part, {});
   beast::error_code failure;
-  body->get().body().open(part.c_str(), beast::file_mode::write_new, failure);
+  body->get().body().open(upload.part.c_str(), beast::file_mode::write_new, failure);
   if (failure) return refuse(http::status::forbidden, name + " cannot be written: " + failure.message());
   stream_.expires_after(services_.limits.upload);
   http::async_read(stream_, buffer_, *body,
-                   [self = shared_from_this(), body, part, to = *place](beast::error_code broken, std::size_t) {
-                     std::error_code problem;
+                   [self = shared_from_this(), body, upload](beast::error_code broken, std::size_t) {
                      body->get().body().close();
-                     if (!broken) std::filesystem::rename(part, to, problem);
-                     if (broken || problem) std::filesystem::remove(part, problem);
-                     if (broken == http::error::body_limit)
-                       return self->refuse(http::status::payload_too_large, "the file is larger than the limit");
-                     if (broken) return;  // the connection is gone
-                     self->services_.uploads.add(to);
-                     output::JsonWriter json;
-                     json.begin_object().member("path", self->services_.folder.relative(to)).end_object();
-                     self->send(http::status::created, "application/json", as_utf8(json.text()));
+                     self->end_upload(upload, broken);
                    });
+}
+
+/// Gives an upload that is whole its name, and removes another one.
+void HttpConnection::end_upload(const Upload& upload, beast::error_code broken) {
+  if (!broken && !upload.page.empty()) services_.listed.add(upload.place, KnownFiles::stamp_of(upload.part));
+  const Result<Done> moved = broken ? Done{} : move_all(services_.folder, {{upload.part, upload.place}});
+  std::error_code ignored;
+  if (broken || !moved) std::filesystem::remove(upload.part, ignored);
+  if (broken == http::error::body_limit)
+    return refuse(http::status::payload_too_large, "the file is larger than the limit");
+  // What fails on the disk and not on the way; quotas and limits of a file's size are others of its kind.
+  for (const auto full : {boost::system::errc::no_space_on_device, boost::system::errc::file_too_large})
+    if (broken == full)
+      return refuse(http::status::insufficient_storage, "nothing of the file was kept: " + broken.message());
+  if (broken) return;  // the connection is gone
+  if (!moved) return refuse(http::status::conflict, to_string(moved.errors().front()));
+  services_.uploads.add(upload.place);
+  asio::post(services_.pool, [self = shared_from_this(), upload] { self->hand_over(upload); });
+}
+
+/// An upload that is whole goes with its page, and at once if that is gone already.
+void HttpConnection::hand_over(const Upload& upload) {
+  if (const std::shared_ptr<Desk> desk = services_.desks.of_page(upload.page))
+    desk->take_charge(upload.place);
+  else if (!upload.page.empty())
+    remove_unused_upload(services_.folder, services_.uploads, upload.place);
+  asio::post(services_.network, [self = shared_from_this(), upload] {
+    output::JsonWriter json;
+    json.begin_object().member("path", self->services_.folder.relative(upload.place)).end_object();
+    self->send(http::status::created, "application/json", as_utf8(json.text()));
+  });
 }
 
 void HttpConnection::remove_upload(const std::string& name) {

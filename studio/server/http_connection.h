@@ -20,11 +20,17 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 
  private:
   using Head = boost::beast::http::request_parser<boost::beast::http::empty_body>;
+  struct Upload {
+    std::string part, place;  ///< where it grows; where it belongs
+    std::string page;         ///< with which it goes; empty: it stays
+  };
 
   void take_head();
   bool refuses_length(std::uint64_t most);
   void take_call();
   void take_upload(const std::string& name);
+  void end_upload(const Upload& upload, boost::beast::error_code broken);
+  void hand_over(const Upload& upload);
   void remove_upload(const std::string& name);
   void send_film(const std::string& path);
   void answer_call(const std::string& body);

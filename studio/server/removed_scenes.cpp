@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/model/errors.h"
 #include "studio/output/files.h"
 #include "studio/server/file_moves.h"
 #include "studio/server/naming_files.h"
@@ -141,7 +142,7 @@ Result<std::vector<std::string>> restore_removed(const Folder& folder, const std
     const std::string path = path_in(*from, file);
     const Result<std::string> place = folder.place(path);
     if (!place)
-      errors.insert(errors.end(), place.errors().begin(), place.errors().end());
+      append(errors, place);
     else if (is_taken(*place))
       errors.push_back({path, "exists already; nothing was brought back", "rename it first"});
     else

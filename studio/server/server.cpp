@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "core/model/errors.h"
 #include "studio/output/option_name.h"
 #include "studio/server/http_connection.h"
 #include "studio/server/services.h"
@@ -109,10 +110,11 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options) {
   Result<Folder> folder = Folder::open(options.folder);
   const Result<Place> place = find_place(options);
   if (!folder || !place) {
-    Errors errors = folder ? Errors{} : folder.errors();
-    if (!place) errors.insert(errors.end(), place.errors().begin(), place.errors().end());
+    Errors errors;
+    append(errors, folder), append(errors, place);
     return errors;
   }
+  UploadList::remove_left(*folder);
   auto impl = std::make_unique<Impl>(std::move(*folder), options.limits, make_token());
   std::string why = listen_on(impl->acceptor, place->address, options.port.value_or(kUsualPort));
   if (!why.empty() && !options.port) why = listen_on(impl->acceptor, place->address, 0);

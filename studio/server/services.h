@@ -15,6 +15,7 @@
 #include "studio/server/known_files.h"
 #include "studio/server/limits.h"
 #include "studio/server/session_scenes.h"
+#include "studio/server/upload_list.h"
 #include "studio/server/urgency.h"
 
 namespace ctpm::server {
@@ -28,6 +29,7 @@ struct Services {
   Access access;
   Limits limits;
   KnownFiles uploads, films;  ///< taken from pages; exported for them
+  UploadList listed{folder};  ///< those of the uploads that go with their pages; of the network's thread
   KnownFiles verified;        ///< sessions that replayed as they were recorded
   KeptAnswers comparisons;
   SessionScenes scenes;

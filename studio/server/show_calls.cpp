@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 
+#include "core/model/errors.h"
 #include "core/model/state.h"
 #include "studio/fidelity/scene.h"
 #include "studio/loading/loaded_scene.h"
@@ -78,7 +79,7 @@ Result<std::string> show_scene(Parameters& parameters, const CallContext& contex
   context.desk->outbox().show(maker.make(rest_state(model), {}));
   context.desk->keep(stage, kept);
   Errors warnings = scene.scene.warnings;
-  for (Error& odd : loading::find_odd_places(scene)) warnings.push_back(std::move(odd));
+  append(warnings, loading::find_odd_places(scene));
   return "{\"view\": " + view_json(scene.scene.spec, model) + ", \"organs\": " + organs.text() +
          ", \"spheres\": " + std::to_string(model.sphere_count()) +
          ", \"elements\": " + std::to_string(model.element_count()) + ", \"warnings\": " + errors_json(warnings) + "}";
@@ -103,7 +104,7 @@ Result<std::string> hold_scenes(Parameters& parameters, const CallContext& conte
     if (file)
       files.insert(*file);
     else
-      errors.insert(errors.end(), file.errors().begin(), file.errors().end());
+      append(errors, file);
   }
   if (!errors.empty()) return errors;
   context.desk->hold(std::move(files));

@@ -165,6 +165,7 @@ void Training::tick() {
       times.add(record.tick_time), precedence.go_on();
       newest_.offer(state, record, so_far.late_ticks, times.p99());
     };
+    options.note = [this](const std::string& text) { tell("train_notes", text); };
     options.tell = [this](const std::string& problem) { tell("train_fails", problem); };
     const session::UnkeptSession unkept;
     const std::string file = request_.file.empty() ? unkept.file() : request_.file;

@@ -28,7 +28,9 @@ HandMove move_of(Parameters& hand) {
 WebClient::WebClient(Services& services, beast::tcp_stream stream, std::shared_ptr<CountedConnection> counted)
     : services_(services), counted_(std::move(counted)), socket_(std::move(stream)) {}
 
-void WebClient::start(const beast::http::request<beast::http::empty_body>& request, const std::string& offered) {
+void WebClient::start(const beast::http::request<beast::http::empty_body>& request, const std::string& offered,
+                      std::string page) {
+  page_ = std::move(page);
   beast::get_lowest_layer(socket_).expires_never();
   websocket::stream_base::timeout timeout{};
   timeout.handshake_timeout = services_.limits.handshake;
@@ -50,7 +52,7 @@ void WebClient::start(const beast::http::request<beast::http::empty_body>& reque
 }
 
 void WebClient::begin() {
-  desk_ = std::make_shared<Desk>(shared_from_this(), [&services = services_](const std::string& file) {
+  desk_ = std::make_shared<Desk>(page_, shared_from_this(), [&services = services_](const std::string& file) {
     remove_unused_upload(services.folder, services.uploads, file);
   });
   services_.desks.add(desk_);

@@ -24,8 +24,10 @@ class WebClient : public Outbox, public std::enable_shared_from_this<WebClient> 
   WebClient(Services& services, boost::beast::tcp_stream stream, std::shared_ptr<CountedConnection> counted);
 
   /// Answers the handshake, which was let in, and serves the page from then on. A page that `offered` another version
-  /// of the protocol is told so, and nothing else: browsers hide from pages why a handshake was refused.
-  void start(const boost::beast::http::request<boost::beast::http::empty_body>& request, const std::string& offered);
+  /// of the protocol is told so, and nothing else: browsers hide from pages why a handshake was refused. `page`: its
+  /// name for itself.
+  void start(const boost::beast::http::request<boost::beast::http::empty_body>& request, const std::string& offered,
+             std::string page);
 
   void send(std::string text) override;
   void send_bytes(std::string bytes) override;
@@ -59,6 +61,7 @@ class WebClient : public Outbox, public std::enable_shared_from_this<WebClient> 
   std::shared_ptr<CountedConnection> counted_;
   boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
   boost::beast::flat_buffer buffer_;
+  std::string page_;
   std::shared_ptr<Desk> desk_;
   std::map<std::int64_t, std::shared_ptr<std::atomic<bool>>> calls_;  ///< running; true: cancelled
   std::optional<Message> writing_;

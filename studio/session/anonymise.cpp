@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "core/model/errors.h"
 #include "recordings/rewrite.h"
 #include "recordings/session_reader.h"
 #include "recordings/signature.h"
@@ -177,7 +178,7 @@ Result<std::vector<SessionReader>> open_all(const std::vector<std::string>& file
     if (session)
       sessions.push_back(std::move(*session));
     else
-      errors.insert(errors.end(), session.errors().begin(), session.errors().end());
+      append(errors, session);
   }
   if (!errors.empty()) return errors;
   return sessions;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/model/nearest_rank.h"
+
 namespace ctpm::session {
 
 /// The 99th percentile of the last computing times of ticks, counted anew every kTimes ticks.
@@ -16,7 +18,7 @@ class RecentTimes {
   bool add(double time) {
     times_.push_back(time);
     if (times_.size() < kTimes) return false;
-    const auto place = times_.begin() + std::ptrdiff_t(kTimes * 99 / 100);
+    const auto place = times_.begin() + std::ptrdiff_t(nearest_rank(0.99, kTimes));
     std::nth_element(times_.begin(), place, times_.end());
     p99_ = *place;
     times_.clear();

@@ -75,9 +75,11 @@ class FailureWatch {
 };
 
 /// Hands the events of the source over, as those of a tick.
-void take_events(sources::InputSource& source, std::int64_t tick, recordings::SessionWriter& writer) {
+void take_events(sources::InputSource& source, std::int64_t tick, recordings::SessionWriter& writer,
+                 const RunOptions& options) {
   for (recordings::Event& event : source.take_events()) {
     event.tick = tick;
+    if (options.note && event.kind == recordings::EventKind::note) options.note(event.text);
     writer.event(std::move(event));
   }
 }
@@ -105,7 +107,7 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
     if (options.in_real_time) clock.wait_for_tick();
     parts.begin_tick(options.in_real_time ? clock.deadline() : waited, waited);
     const std::optional<Inputs> inputs = source.next(tick, report);
-    take_events(source, tick, writer);
+    take_events(source, tick, writer, options);
     if (!inputs) break;
     parts.begin_step();
     if (options.in_real_time) outcome.slip = clock.slip(parts.last(), tick);

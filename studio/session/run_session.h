@@ -35,6 +35,8 @@ struct RunOptions {
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   /// Called in the tick in which recording begins to fail, with the reason; must not wait.
   std::function<void(const std::string& problem)> tell;
+  /// Called in the tick of a note of the source, with its text; must not wait.
+  std::function<void(const std::string& text)> note;
   std::function<bool()> should_stop;  ///< called every tick, for Ctrl-C
   /// Called after each tick, with its State; must not wait.
   std::function<void(const State& state, const recordings::TickRecord& record, const RunOutcome& so_far)> watch;

@@ -2,18 +2,9 @@
 
 #include <algorithm>
 
+#include "core/model/nearest_rank.h"
+
 namespace ctpm::session {
-namespace {
-
-/// The smallest time that at least `share_percent` of all do not exceed.
-double nearest_rank(std::vector<float>& times, std::size_t share_percent) {
-  const std::size_t rank = (share_percent * times.size() + 99) / 100;
-  const auto place = times.begin() + std::ptrdiff_t(rank) - 1;
-  std::nth_element(times.begin(), place, times.end());
-  return double(*place);
-}
-
-}  // namespace
 
 const char* name_of(Deed deed) {
   return deed == Deed::cut ? "in a cut" : deed == Deed::contact ? "in contact" : "no tool in tissue";
@@ -42,9 +33,8 @@ Deed TickTimes::add(const recordings::TickRecord& record, double lost) {
 }
 
 DeedTimes TickTimes::of(Deed deed) const {
-  std::vector<float> times = times_[std::size_t(deed)], own = own_[std::size_t(deed)];
-  if (times.empty()) return {};
-  return {std::int64_t(times.size()), nearest_rank(times, 50), nearest_rank(times, 99), nearest_rank(own, 99)};
+  const std::vector<float>&times = times_[std::size_t(deed)], &own = own_[std::size_t(deed)];
+  return {std::int64_t(times.size()), percentile(times, 0.5), percentile(times, 0.99), percentile(own, 0.99)};
 }
 
 }  // namespace ctpm::session

@@ -20,12 +20,6 @@ Errors check_script(const std::string& file, const scenes::SceneDraft& scene) {
   return text ? scenes::check_script(*text, file, scene) : text.errors();
 }
 
-Result<OpenedSource> open_script(const std::string& file, const Model& model, const scenes::SceneSpec& scene) {
-  const Result<std::string> text = output::read_text_file(file);
-  if (!text) return text.errors();
-  return read_script_source(*text, file, model, scene);
-}
-
 Result<OpenedSource> read_script_source(const std::string& text, const std::string& file, const Model& model,
                                         const scenes::SceneSpec& scene) {
   scenes::PlaceFinder finder = scenes::finder_of(model, scene);

@@ -27,17 +27,16 @@ OpenedSource play_script(const scenes::Script& script, const Model& model);
 /// refused.
 Errors check_script(const std::string& file, const scenes::SceneDraft& scene);
 
-/// The script in `file`. `scene` has the probes that its places may name. Errors: the file cannot be read; those of
-/// read_script(), with places.
-Result<OpenedSource> open_script(const std::string& file, const Model& model, const scenes::SceneSpec& scene);
-
 /// The motion in `file`. Errors: the file cannot be read; those of read_motion(), with places. Remark: columns that are
 /// not used.
 Result<OpenedSource> open_motion(const std::string& file, const Model& model);
 
-/// The same for a text that stands for the file's.
+/// The script in a text that stands for the file's. `scene` has the probes that its places may name. Errors: those of
+/// read_script(), with places.
 Result<OpenedSource> read_script_source(const std::string& text, const std::string& file, const Model& model,
                                         const scenes::SceneSpec& scene);
+
+/// As open_motion() for a text that stands for the file's.
 Result<OpenedSource> read_motion_source(const std::string& text, const std::string& file, const Model& model);
 
 }  // namespace ctpm::sources

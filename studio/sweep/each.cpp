@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/model/errors.h"
 #include "recordings/byte_hash.h"
 #include "recordings/session.h"
 #include "studio/output/files.h"
@@ -102,7 +103,7 @@ Result<Plan> plan_each(const std::vector<std::string>& command, const std::vecto
   for (const std::string& session : sessions) {
     const Result<std::string> id = id_of(plan.command, absolute(session));
     if (!id)
-      errors.insert(errors.end(), id.errors().begin(), id.errors().end());
+      append(errors, id);
     else if (!seen.emplace(*id, session).second)
       errors.push_back({session, "is there twice", ""});
     else

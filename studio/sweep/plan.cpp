@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "core/model/errors.h"
 #include "recordings/byte_hash.h"
 #include "recordings/session.h"
 #include "scenes/script.h"
@@ -21,6 +22,15 @@ std::string beside(const std::string& file, const std::string& path) {
 
 bool is_motion(const std::string& path) { return fs::path(path).extension() == ".csv"; }
 
+/// Why the files cannot be read that a sweep with refused values names.
+Errors unreadable_files(const scenes::SweepDraft& draft, const std::string& file) {
+  Errors errors;
+  const scenes::SweepSpec& sweep = draft.sweep.spec;
+  for (const auto& [pointer, path] : {std::pair("/scene", sweep.scene), std::pair("/script", sweep.script)})
+    if (!path.empty() && draft.problems.is_good(pointer)) append(errors, output::read_text_file(beside(file, path)));
+  return errors;
+}
+
 /// The pointer at which an error's message begins; empty if it begins with none.
 std::string pointer_in(const std::string& message) {
   const std::size_t end = message.find(": ");
@@ -32,11 +42,16 @@ std::string pointer_in(const std::string& message) {
 Result<Sweep> Sweep::load(const std::string& file) {
   const Result<std::string> text = output::read_text_file(file);
   if (!text) return text.errors();
-  Result<scenes::SweepText> read = scenes::read_sweep(*text, file);
+  Result<scenes::SweepDraft> read = scenes::read_sweep_draft(*text, file);
   if (!read) return read.errors();
+  if (!read->problems.is_empty()) {
+    Errors errors = read->problems.errors();
+    append(errors, unreadable_files(*read, file));
+    return errors;
+  }
   Sweep sweep;
   sweep.file_ = file;
-  sweep.text_ = std::move(*read);
+  sweep.text_ = std::move(read->sweep);
   sweep.samples_ = samples_of(sweep.text_.spec);
   return sweep;
 }
@@ -59,7 +74,7 @@ Result<std::string> Sweep::text_of(const std::string& path, const std::vector<st
   return found->second->with(values);
 }
 
-Result<TaskFiles> Sweep::files_of(std::size_t task) {
+Sweep::ReadFiles Sweep::read_files(std::size_t task) {
   const scenes::SweepSpec& sweep = text_.spec;
   const Sample& sample = samples_[task];
   std::string path[2] = {sweep.scene, sweep.script};
@@ -71,8 +86,8 @@ Result<TaskFiles> Sweep::files_of(std::size_t task) {
     else
       pointers[of].push_back(sweep.vary[i].key), values[of].push_back(sample.values[i].json);
   }
-  TaskFiles files;
-  Errors errors;
+  ReadFiles read;
+  TaskFiles& files = read.files;
   std::string *const paths[] = {&files.scene_path, &files.script_path}, *const texts[] = {&files.scene_text,
                                                                                           &files.script_text};
   for (const std::size_t of : {0, 1}) {
@@ -82,10 +97,17 @@ Result<TaskFiles> Sweep::files_of(std::size_t task) {
     if (text)
       *texts[of] = std::move(*text);
     else
-      errors.insert(errors.end(), text.errors().begin(), text.errors().end());
+      (of == 0 ? read.of_scene : read.of_script) = text.errors();
   }
+  return read;
+}
+
+Result<TaskFiles> Sweep::files_of(std::size_t task) {
+  ReadFiles read = read_files(task);
+  Errors errors = std::move(read.of_scene);
+  append(errors, std::move(read.of_script));
   if (!errors.empty()) return errors;
-  return files;
+  return std::move(read.files);
 }
 
 Result<std::string> Sweep::id_of(const TaskFiles& files, const scenes::SceneSpec& scene) {
@@ -109,17 +131,13 @@ Result<std::string> Sweep::id_of(const TaskFiles& files, const scenes::SceneSpec
   return recordings::hash_text(hash.value());
 }
 
-Errors Sweep::problems_of(std::size_t task, const TaskFiles& files, const Result<scenes::SceneDraft>& draft) const {
-  Errors found;
-  if (draft)
-    found = draft->problems.errors();
-  else
-    found = draft.errors();
-  if (!files.script_path.empty() && !is_motion(files.script_path)) {
-    const Errors of_script = scenes::check_script(files.script_text, files.script_path,
-                                                  draft ? *draft : scenes::unknown_scene(files.scene_path));
-    found.insert(found.end(), of_script.begin(), of_script.end());
-  }
+Errors Sweep::problems_of(std::size_t task, const ReadFiles& read, const Result<scenes::SceneDraft>& draft) const {
+  const TaskFiles& files = read.files;
+  Errors found = draft ? draft->problems.errors() : draft.errors();
+  append(found, read.of_script);
+  if (read.of_script.empty() && !files.script_path.empty() && !is_motion(files.script_path))
+    append(found, scenes::check_script(files.script_text, files.script_path,
+                                       draft ? *draft : scenes::unknown_scene(files.scene_path)));
   for (Error& error : found) error = placed(error, task);
   return found;
 }
@@ -131,10 +149,12 @@ std::string Sweep::described(std::size_t task) const {
   return text;
 }
 
-/// An error at a value that the sweep sets stands where the sweep says it.
+/// An error at a value that the sweep sets stands where the sweep says it, another one of a text with such values where
+/// its author wrote it.
 Error Sweep::placed(const Error& error, std::size_t task) const {
   const std::string pointer = pointer_in(error.message);
-  for (std::size_t i = 0; i < text_.spec.vary.size() && !pointer.empty(); ++i) {
+  if (pointer.empty()) return error;
+  for (std::size_t i = 0; i < text_.spec.vary.size(); ++i) {
     const scenes::SweepAxis& axis = text_.spec.vary[i];
     if (axis.key.empty() || (pointer != axis.key && !pointer.starts_with(axis.key + "/"))) continue;
     const int index = samples_[task].index[i];
@@ -142,7 +162,22 @@ Error Sweep::placed(const Error& error, std::size_t task) const {
     if (index >= 0) at += "/values/" + std::to_string(index);
     return text_.places.error_at(at, error.message.substr(pointer.size() + 2), error.hint);
   }
+  for (const auto& [path, slots] : texts_)
+    if (slots && slots->places().file_name() == path && error.where.starts_with(path + ":"))
+      return slots->places().error_at(pointer, error.message.substr(pointer.size() + 2), error.hint);
   return error;
+}
+
+/// What an error does not say of the session that has it.
+Error Sweep::with_values(Error error, std::size_t task) const {
+  if (!error.where.starts_with(file_ + ":")) error.message += " (with " + described(task) + ")";
+  return error;
+}
+
+Errors Sweep::said(const Errors& errors, std::size_t task) const {
+  Errors said;
+  for (const Error& error : errors) said.push_back(with_values(placed(error, task), task));
+  return said;
 }
 
 Plan Sweep::empty_plan() const {
@@ -158,11 +193,13 @@ Plan Sweep::empty_plan() const {
 }
 
 Result<std::string> Sweep::checked_id(std::size_t task) {
-  const Result<TaskFiles> files = files_of(task);
-  if (!files) return files.errors();
-  const Result<scenes::SceneDraft> draft = scenes::load_draft(files->scene_path, {.text = files->scene_text});
-  if (Errors found = problems_of(task, *files, draft); !found.empty()) return found;
-  return id_of(*files, draft->scene.spec);
+  const ReadFiles read = read_files(task);
+  const TaskFiles& files = read.files;
+  const Result<scenes::SceneDraft> draft = read.of_scene.empty()
+                                               ? scenes::load_draft(files.scene_path, {.text = files.scene_text})
+                                               : Result<scenes::SceneDraft>(read.of_scene);
+  if (Errors found = problems_of(task, read, draft); !found.empty()) return found;
+  return id_of(files, draft->scene.spec);
 }
 
 Result<Plan> Sweep::plan() {
@@ -182,9 +219,7 @@ Result<Plan> Sweep::plan() {
       for (const Error& error : id.errors()) {
         // What depends on more than one value is said with the first ones that show it.
         if (errors.size() >= kMostErrors || !said.insert(error.where + error.message).second) continue;
-        const bool is_of_sweep = error.where.starts_with(file_ + ":");
-        errors.push_back(
-            {error.where, error.message + (is_of_sweep ? "" : " (with " + described(task) + ")"), error.hint});
+        errors.push_back(with_values(error, task));
       }
       continue;
     }

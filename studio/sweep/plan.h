@@ -47,6 +47,10 @@ class Sweep {
   /// The files of one session. Errors: a file that cannot be read; a key that has no place in it.
   Result<TaskFiles> files_of(std::size_t task);
 
+  /// The errors of a session's files at the places that people can see: the sweep's where it sets the value, else those
+  /// of the files as they were written, with the values of the session.
+  Errors said(const Errors& errors, std::size_t task) const;
+
   /// Number that names a session by its content: the texts of scene and script, the bytes of meshes, the duration and
   /// the physics revision. `scene` is what the scene's text says. Error: a mesh that is missing.
   Result<std::string> id_of(const TaskFiles& files, const scenes::SceneSpec& scene);
@@ -57,11 +61,19 @@ class Sweep {
   Result<Plan> plan();
 
  private:
+  /// The files of one session as far as they can be read, and why not.
+  struct ReadFiles {
+    TaskFiles files;
+    Errors of_scene, of_script;
+  };
+
   Sweep() = default;
+  ReadFiles read_files(std::size_t task);
   Result<std::string> text_of(const std::string& path, const std::vector<std::string>& pointers,
                               const std::vector<std::string>& values);
-  Errors problems_of(std::size_t task, const TaskFiles& files, const Result<scenes::SceneDraft>& draft) const;
+  Errors problems_of(std::size_t task, const ReadFiles& read, const Result<scenes::SceneDraft>& draft) const;
   Error placed(const Error& error, std::size_t task) const;
+  Error with_values(Error error, std::size_t task) const;
   std::string described(std::size_t task) const;
   Plan empty_plan() const;
   Result<std::string> checked_id(std::size_t task);

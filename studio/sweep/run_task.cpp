@@ -103,10 +103,10 @@ Errors Recorder::start(const TaskFiles& files) {
   return {};
 }
 
-std::optional<TaskResult> Recorder::run(const TaskFiles& files, const std::string& id, const Claim& claim,
-                                        const std::function<bool()>& should_stop) {
+std::optional<TaskResult> Recorder::run(const TaskFiles& files, std::size_t task, const std::string& id,
+                                        const Claim& claim, const std::function<bool()>& should_stop) {
   Result<sources::OpenedSource> source = open_source(files, started_->scene);
-  if (!source) return failed(source.errors());
+  if (!source) return failed(sweep_.said(source.errors(), task));
   recordings::SessionStart start = started_->start;
   for (const auto& [key, value] : source->metadata) start.metadata[key] = value;
   start.metadata["sweep"] = sweep_.spec().name, start.metadata["sweep_task"] = id;
@@ -129,7 +129,7 @@ Result<std::optional<TaskResult>> Recorder::record(std::size_t task, const std::
   const Result<TaskFiles> files = sweep_.files_of(task);
   if (!files) return files.errors();
   const std::int64_t begin = own_processor_ns();
-  if (const Errors errors = start(*files); !errors.empty()) return std::optional(failed(errors));
+  if (const Errors errors = start(*files); !errors.empty()) return std::optional(failed(sweep_.said(errors, task)));
   const std::int64_t started = own_processor_ns();
   const Result<std::string> now = sweep_.id_of(*files, started_->scene.scene.spec);
   if (!now) return now.errors();
@@ -137,7 +137,7 @@ Result<std::optional<TaskResult>> Recorder::record(std::size_t task, const std::
     return Error{sweep_.file(), "or a file that it names has changed since it was planned",
                  "plan it again: what is done and did not change stays"};
   const std::int64_t checked = own_processor_ns();
-  std::optional<TaskResult> result = run(*files, id, claim, should_stop);
+  std::optional<TaskResult> result = run(*files, task, id, claim, should_stop);
   if (result) result->processor_s = 1e-9 * double(own_processor_ns() - checked + started - begin);
   return result;
 }

@@ -30,7 +30,7 @@ class Recorder {
     recordings::SessionStart start;
   };
   Errors start(const TaskFiles& files);
-  std::optional<TaskResult> run(const TaskFiles& files, const std::string& id, const Claim& claim,
+  std::optional<TaskResult> run(const TaskFiles& files, std::size_t task, const std::string& id, const Claim& claim,
                                 const std::function<bool()>& should_stop);
 
   Sweep& sweep_;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/model/errors.h"
 #include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
 #include "studio/views/event_camera.h"
@@ -222,7 +223,6 @@ Result<std::optional<NamedCamera>> find_event(const std::string& only, const ren
 /// Sets the camera of that name; see LookRequest::camera.
 void choose_camera(const std::string& name, const std::string& cutaway, const scenes::SceneSpec& scene,
                    const render::SceneView& view, double aspect, const State* told, Look& look, Errors& errors) {
-  const auto add = [&](const Errors& more) { errors.insert(errors.end(), more.begin(), more.end()); };
   bool is_the_scenes = false;
   for (const scenes::CameraSpec& camera : scene.cameras) is_the_scenes |= camera.name == name;
   const bool is_fitted = name == "fitted" && !is_the_scenes;
@@ -234,13 +234,13 @@ void choose_camera(const std::string& name, const std::string& cutaway, const sc
   }
   if (is_of_places(name) && !is_the_scenes) {
     const Result<render::Camera> placed = placed_camera(name, render::up_of(*view.model), aspect);
-    if (!placed) return add(placed.errors());
+    if (!placed) return append(errors, placed);
     look.draw.camera = *placed;
     return;
   }
   const bool is_free = name.empty() || is_event || look.follows;
   const Result<render::Camera> usual = find_camera(scene, view, is_free ? "" : name, aspect);
-  if (!usual) return add(usual.errors());
+  if (!usual) return append(errors, usual);
   look.draw.camera = *usual;
   if (name.empty())
     look.is_found = scene.cameras.empty(), look.camera = look.is_found ? "fitted" : scene.cameras.front().name;
@@ -251,7 +251,7 @@ void choose_camera(const std::string& name, const std::string& cutaway, const sc
     return;
   }
   const Result<std::optional<NamedCamera>> found = find_event(is_event ? name : "", view, aspect, *usual, told);
-  if (!found) return add(found.errors());
+  if (!found) return append(errors, found);
   if (!*found) return;
   const render::Camera& near = (*found)->found.camera;
   if (look.follows) {

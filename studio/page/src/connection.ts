@@ -29,12 +29,13 @@ export class Connection {
   private readonly turns = new Map<number, Promise<unknown>>(); // the last call of each stage
   private readonly stages = new Map<number, (message: Binary) => void>();
   private readonly events = new Map<string, (content: unknown) => void>();
+  private readonly page = crypto.getRandomValues(new Uint32Array(4)).join("-"); // by which the program knows with whom an upload goes
   private next = 1;
   onUnreadable: (problem: string) => void = () => {}; // a message that was left out
 
   /** `onClose` gets the program's words if it speaks another version of the protocol. */
   constructor(private readonly token: string, onOpen: () => void, onClose: (otherVersion: string) => void) {
-    this.socket = new WebSocket(`${location.protocol.replace("http", "ws")}//${location.host}/socket`, [kSubprotocol, `token.${token}`]);
+    this.socket = new WebSocket(`${location.protocol.replace("http", "ws")}//${location.host}/socket`, [kSubprotocol, `token.${token}`, `page.${this.page}`]);
     this.socket.binaryType = "arraybuffer";
     this.socket.onopen = onOpen;
     this.socket.onclose = ({ code, reason }) => {
@@ -84,6 +85,7 @@ export class Connection {
       request.open("PUT", `/upload/${encodeURIComponent(name)}`);
       request.setRequestHeader("Authorization", `Bearer ${this.token}`);
       request.setRequestHeader("Content-Type", "application/octet-stream");
+      request.setRequestHeader("Ctpm-Page", this.page);
       request.upload.onprogress = (event) => progress(event.total ? event.loaded / event.total : 0);
       request.onload = () => {
         if (request.status === 201) return resolve();

@@ -62,7 +62,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
   const [sceneKey, setSceneKey] = useState(""); // of the scene of the session that runs or has ended; empty: not known
   const [scenes, setScenes] = useState<SceneOfSession[]>([]); // of the sessions, once they are known
   const [chosenExpert, setChosenExpert] = useState<string | null>(null); // null: the page's proposal for what is recorded; empty: none
-  const [device, setDevice] = useState(storedDevice), [waits, setWaits] = useState("");
+  const [device, setDevice] = useState(storedDevice), [waits, setWaits] = useState(""), [note, setNote] = useState("");
   const [ended, setEnded] = useState<EndedTraining | null>(null);
   const [error, setError] = useState<Error | null>(null);
   const [, setTick] = useState(0);
@@ -89,6 +89,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
     };
     viewer.onDraw = () => placeRing(ring.current, made);
     made.onWaiting = setWaits;
+    made.onNote = setNote;
     made.onFailing = (problem) => setError(new Error(`Recording fails now: ${problem}`));
     made.onEnded = (content) => {
       document.exitPointerLock?.();
@@ -108,7 +109,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
   /** `like`: the session before, of which this one's name differs by its number. */
   const begin = useCallback(async (path: string, like?: string) => {
     if (!trainer) return;
-    setScene(path), setSceneKey(""), setError(null), setEnded(null), setWaits(""), setPhase("loading");
+    setScene(path), setSceneKey(""), setError(null), setEnded(null), setWaits(""), setNote(""), setPhase("loading");
     storeDevice(device);
     loading.current = new AbortController();
     try {
@@ -327,6 +328,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
         {phase === "running" && (
           <>
             <Section title="Now">
+              {note && <p class="warning" role="status">Of the device: {note}.</p>}
               <Readings rows={[
                 ...hands.flatMap((hand, i): [string, string, string?][] => {
                   const of = hands.length < 2 ? "" : i === 0 ? ", right" : ", left";

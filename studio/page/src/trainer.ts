@@ -52,6 +52,7 @@ export class Trainer {
   onWaiting: (why: string) => void = () => {}; // the device has sent nothing of use
   onFrame: () => void = () => {};
   onEnded: (ended: EndedTraining) => void = () => {};
+  onNote: (text: string) => void = () => {}; // what is odd about the device
   onFailing: (problem: string) => void = () => {}; // what is recorded cannot be saved now
   isLedByKeys = false; // and not by the pointer since
   private held = false;
@@ -79,6 +80,7 @@ export class Trainer {
       this.onEnded(content as EndedTraining);
     });
     connection.onEvent("train_waits", (content) => this.onWaiting((content as { text: string }).text));
+    connection.onEvent("train_notes", (content) => this.onNote((content as { text: string }).text));
     connection.onEvent("train_fails", (content) => this.onFailing((content as { text: string }).text));
   }
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "core/model/nearest_rank.h"
 #include "recordings/replay.h"
 #include "tests/recordings/sessions.h"
 
@@ -70,10 +71,6 @@ void TickWithRecording1000Spheres(benchmark::State& state) {
     record_us.push_back(std::chrono::duration<double, std::micro>(t2 - t1).count());
   }
   if (!writer->finish()) state.SkipWithError("not recorded");
-  const auto percentile = [](std::vector<double>& values, double part) {
-    std::sort(values.begin(), values.end());
-    return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
-  };
   state.counters["step_p50_us"] = percentile(step_us, 0.5);
   state.counters["record_p50_us"] = percentile(record_us, 0.5);
   state.counters["record_p999_us"] = percentile(record_us, 0.999);

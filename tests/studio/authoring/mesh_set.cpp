@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -21,12 +20,14 @@
 #include <thread>
 #include <vector>
 
+#include "importers/mesh_file.h"
 #include "recordings/session_reader.h"
 #include "tests/studio/commands/run_program.h"
 
 namespace {
 
 namespace fs = std::filesystem;
+using ctpm::importers::suffix_of;
 using ctpm::testing::ProgramOutcome;
 
 constexpr double kMostSeconds = 60, kMostMebibytes = 1024, kVolumeKept = 0.05;
@@ -44,11 +45,10 @@ struct Row {
 };
 
 bool is_mesh(const fs::path& path) {
-  std::string suffix = path.extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  static const std::vector<std::string> kSuffixes{".obj", ".stl", ".ply", ".off", ".gltf", ".glb", ".dae", ".fbx"};
+  static const std::vector<std::string> kSuffixes{"obj", "stl", "ply", "off", "gltf", "glb", "dae", "fbx"};
   const bool is_broken_on_purpose = path.string().find("/invalid/") != std::string::npos;
-  return !is_broken_on_purpose && std::find(kSuffixes.begin(), kSuffixes.end(), suffix) != kSuffixes.end();
+  return !is_broken_on_purpose &&
+         std::find(kSuffixes.begin(), kSuffixes.end(), suffix_of(path.string())) != kSuffixes.end();
 }
 
 std::string first_line_with(const std::string& text, const std::string& part) {

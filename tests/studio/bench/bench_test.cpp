@@ -85,16 +85,6 @@ TEST(Bench, WhatDoesNotConvergeIsNamedInPlaceOfAnError) {
             "the error in force grows.");
 }
 
-TEST(Bench, PercentilesAreValuesThatWereMeasured) {
-  std::vector<double> values;
-  for (int i = 1000; i >= 1; --i) values.push_back(i);
-  EXPECT_EQ(bench::percentile(values, 0.5), 500);
-  EXPECT_EQ(bench::percentile(values, 0.99), 990);
-  EXPECT_EQ(bench::percentile(values, 0.999), 999);
-  EXPECT_EQ(bench::percentile({7}, 0.999), 7);
-  EXPECT_EQ(bench::percentile({}, 0.5), 0);
-}
-
 /// A run of one sphere that goes along x, `off` [m] away from where it should be.
 bench::BenchRun straight_run(double off) {
   bench::BenchRun run;

@@ -195,6 +195,23 @@ TEST_F(CohortProgram, AFolderIsWrittenAnewAndNoOtherFilesInIt) {
   }
 }
 
+TEST_F(CohortProgram, ThePageOfATraineeWhoLeftGoesAndNoOtherFile) {
+  const auto into = [&](const char* trainees) {
+    EXPECT_EQ(ctpm({"cohort", "course.json", "--trainees", trainees, "--no-pictures", "-o", "left"}).code, 0);
+  };
+  for (const char* one : {"Ana", "Ben"})
+    fs::create_directories(path("class")),
+        fs::copy(path(std::string("trainees/") + one), path(std::string("class/") + one), fs::copy_options::recursive);
+  into("class");
+  write("left/trainee-notes.html", "<p>somebody's notes</p>"), write("left/trainee-Ben.txt", "somebody's text");
+  fs::copy_file(path("left/trainee-Ben.html"), path("left/kept-Ben.html"));
+  fs::remove_all(path("class/Ben"));
+  into("class");
+  EXPECT_FALSE(fs::exists(path("left/trainee-Ben.html")));
+  for (const char* name : {"trainee-Ana.html", "trainee-notes.html", "trainee-Ben.txt", "kept-Ben.html", "index.html"})
+    EXPECT_TRUE(fs::exists(path(std::string("left/") + name))) << name;
+}
+
 TEST_F(CohortProgram, TablesAndStatementsHoldEverySession) {
   ASSERT_EQ(ctpm({"cohort", "course.json", "--trainees", "trainees", "-o", "tables"}).code, 0);
   const auto rows = rows_of("tables");
@@ -341,6 +358,10 @@ TEST_F(CohortProgram, ACourseIsCheckedWithItsScenesAndItsExpertsSessions) {
   const ProgramOutcome measured = ctpm({"cohort", "moved.json", "--trainees", "trainees", "-o", "m", "--no-pictures"});
   EXPECT_EQ(measured.code, 0);
   EXPECT_TRUE(holds(measured.err, warning)) << measured.err;
+  // Where every session is of a task, no scene is read for it.
+  const ProgramOutcome all = ctpm({"cohort", "moved.json", "--trainees", "trainees/Ana", "-o", "m", "--no-pictures"});
+  EXPECT_EQ(all.code, 0);
+  EXPECT_FALSE(holds(all.err, "other.json")) << all.err;
 
   write("broken.json", "{}");
   write("spoilt/a.ctpm", "no session");
@@ -420,6 +441,12 @@ TEST_F(CohortProgram, WhatCannotBeMeasuredIsRefusedWithEveryReason) {
   refused = ctpm({"cohort", "--experts", "twice", "--trainees", "trainees", "-o", "refused"});
   EXPECT_EQ(refused.code, 2);
   EXPECT_TRUE(holds(refused.err, "is the same session as") && holds(refused.err, "broken.ctpm")) << refused.err;
+  fs::create_directories(path("empty"));
+  refused = ctpm({"cohort", "--experts", "nowhere", "--trainees", "empty", "-o", "course.json/out"});
+  EXPECT_EQ(refused.code, 2);
+  for (const char* part :
+       {"nowhere: error: does not exist", "empty: error: holds no session", "course.json/out: error: cannot be made"})
+    EXPECT_TRUE(holds(refused.err, part)) << refused.err;
   write("bad.json", course(R"({"measure": "peak_forse_n"}, {"measure": "completion_time_s", "low": 2, "high": 1})"));
   for (const std::vector<std::string>& command :
        {std::vector<std::string>{"cohort", "bad.json", "--trainees", "trainees", "-o", "refused"},

@@ -111,6 +111,26 @@ TEST_F(AuthorTools, PlacesByMeaningAreRecordedAndProbesAreColumns) {
   expect_says(results, {"Probe spot", "from its first place [mm]"});
 }
 
+TEST_F(AuthorTools, AFitSaysWhetherThePaperHasTheForcesOfATissue) {
+  const auto fit_of = [&](const std::string& material) {
+    write("block.json", R"({"format": "ctpm-scene", "version": 1, "name": "block", "settle_s": 0, "organs": [
+      {"name": "block", "rig": {"block": [5, 5, 4]}, "anchors": [{"lowest_mm": 1}], "material": )" +
+                            material + "}]}");
+    const auto fitted = ctpm({"fit", "block.json"});
+    EXPECT_EQ(fitted.code, 0) << fitted.err;
+    return fitted.out;
+  };
+  const std::string none = "The paper has no forces of this material";
+  const std::string liver = fit_of(R"({"preset": "liver"})");
+  EXPECT_NE(liver.find("Table 1, CTPM [N]"), std::string::npos) << liver;
+  EXPECT_EQ(liver.find(none), std::string::npos) << liver;
+  for (const char* material : {R"({"preset": "heart"})", R"({"preset": "liver", "spring_kpa_per_mm": 9})"}) {
+    const std::string other = fit_of(material);
+    EXPECT_EQ(other.find("Table 1"), std::string::npos) << other;
+    EXPECT_NE(other.find(none), std::string::npos) << other;
+  }
+}
+
 TEST_F(AuthorTools, APreviewColoursSpheresByWhatTheyAreMadeOf) {
   write("scene.json", [] {
     std::string layered = scene();

@@ -80,6 +80,35 @@ TEST_F(BadInput, AMeshThatIsOpenBeyondRepair) {
          {"open.obj: error:", "hole", "mm"});
 }
 
+TEST_F(BadInput, WhatMayNotBeReadIsSaidToBeThereAndRefused) {
+  fs::permissions(folder_.path(), fs::perms(0755));
+  fs::create_directory(folder_.path() / "locked");
+  fs::copy_file(kShipped + "organs/kidney.obj", folder_.path() / "mine.obj");
+  write("locked/a.json", "{}"), write("s.json", "{}");
+  for (const char* name : {"locked", "mine.obj", "s.json"}) fs::permissions(folder_.path() / name, fs::perms::none);
+  const std::string denied = ": error: cannot be read: Permission denied";
+  for (const auto& [what, name] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"check", "locked/a.json"}, "locked/a.json"},
+           {{"check", kShipped + "skin.json", "--script", "s.json"}, "s.json"},
+           {{"import", "mine.obj", "-o", "x.json"}, "mine.obj"},
+           {{"studio", "locked", "--no-open", "--port", "0"}, "locked"}}) {
+    std::vector<std::string> command{"timeout", "20", CTPM_PROGRAM};
+    command.insert(command.end(), what.begin(), what.end());
+    const auto outcome = testing::run(command, folder_.path(), testing::Whose::nobodys);
+    EXPECT_EQ(outcome.code, 2) << name;
+    EXPECT_NE(outcome.err.find(name + denied), std::string::npos) << outcome.err;
+  }
+  fs::permissions(folder_.path() / "locked", fs::perms(0755));
+}
+
+TEST_F(BadInput, AnImportToANameThatNoSceneCanHaveOrToFilesThatAreThere) {
+  for (const char* name : {"a\nb.json", "a\tb.json", "a\xff.json"})
+    refuse({"import", kShipped + "organs/kidney.obj", "-o", name}, {"a scene's name must be UTF-8"});
+  for (const char* name : {"b.json", "b.obj", "b.script.json"}) write(name, "precious");
+  refuse({"import", kShipped + "organs/kidney.obj", "-o", "b.json"},
+         {"b.json: error: exists already", "b.obj: error: exists already", "b.script.json: error: exists already"});
+}
+
 TEST_F(BadInput, AnImportWithBadOptionsNamesThemAll) {
   refuse({"import", kShipped + "organs/liver.obj", "--unit", "ell", "--radius-mm", "-1", "--anchor", "lowest", "-o",
           "a.json"},

@@ -130,12 +130,29 @@ TEST_F(Record, WhatDoesNotFitTogetherIsToldAtOnceAndNothingIsWritten) {
   refused({"--continue", "nowhere.ctpm", "--at", "1", "--script", "press.json", "-o", "x.ctpm"},
           {"nowhere.ctpm: error:"});
   refused({"block.json", "--motion", "nowhere.csv", "-o", "x.ctpm"}, {"nowhere.csv: error: does not exist"});
+  // Files that are missing are said with all that is wrong besides.
+  refused({"none.json", "--script", "none-either.json", "--duration-s", "-1", "-o", "no/x.ctpm"},
+          {"none.json: error: does not exist", "none-either.json: error: does not exist",
+           "--duration-s: error:", "no/x.ctpm: error:"});
+  refused({"--continue", "nowhere.ctpm", "--at", "1", "--motion", "nowhere.csv", "-o", "no/x.ctpm"},
+          {"nowhere.ctpm: error: does not exist", "nowhere.csv: error: does not exist", "no/x.ctpm: error:"});
   write("bad.csv", "time_s,tool_x_mm,tool_y_mm,tool_z_mm\n0,0,0,nan\n");
   refused({"block.json", "--motion", "bad.csv", "-o", "x.ctpm"}, {"bad.csv:2:7: error: tool_z_mm: got 'nan'"});
   ctpm({"record", "block.json", "--script", "press.json", "-o", "a.ctpm", "--fast", "--duration-s", "0.1"});
   for (const std::string at : {"0.2", "-1", "nan"})
     refused({"--continue", "a.ctpm", "--at", at, "--script", "press.json", "-o", "x.ctpm"},
             {"--at: error: got", "must be in [0, 0.100] s: so long lasts a.ctpm"});
+}
+
+TEST_F(Record, AScriptOrAMotionMayComeThroughAPipe) {
+  write("motion.csv", "time_s,tool_x_mm,tool_y_mm,tool_z_mm\n0,0,0,60\n0.1,0,0,55\n");
+  for (const char* source : {"--script <(cat press.json)", "--motion <(cat motion.csv)"}) {
+    const testing::ProgramOutcome done = testing::run({"bash", "-c",
+                                                       std::string(CTPM_PROGRAM) + " record block.json " + source +
+                                                           " -o piped.ctpm --overwrite --fast --duration-s 0.1"},
+                                                      folder_.path());
+    EXPECT_EQ(done.code, 0) << source << ": " << done.err;
+  }
 }
 
 /// "N ticks" of the line that begins with `what`; -1 if there is none.

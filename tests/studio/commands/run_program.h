@@ -29,8 +29,12 @@ inline std::string slurp(const std::filesystem::path& path) {
   return text.str();
 }
 
-/// Runs `command` (program and arguments, no shell) in `folder`.
-inline ProgramOutcome run(const std::vector<std::string>& command, const std::filesystem::path& folder) {
+enum class Whose { own, nobodys };  ///< rights
+
+/// Runs `command` (program and arguments, no shell) in `folder`. With nobody's rights, which modes of files limit, if
+/// this process is root's, for whom they do not.
+inline ProgramOutcome run(const std::vector<std::string>& command, const std::filesystem::path& folder,
+                          Whose rights = Whose::own) {
   const std::filesystem::path out = folder / ".stdout", err = folder / ".stderr";
   const pid_t child = fork();
   if (child == 0) {
@@ -38,6 +42,8 @@ inline ProgramOutcome run(const std::vector<std::string>& command, const std::fi
     const int out_file = open(out.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
     const int err_file = open(err.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
     dup2(out_file, STDOUT_FILENO), dup2(err_file, STDERR_FILENO);
+    constexpr uid_t kNobody = 65534;
+    if (rights == Whose::nobodys && geteuid() == 0 && setuid(kNobody) != 0) _exit(126);
     std::vector<std::string> copies = command;
     std::vector<char*> argv;
     for (std::string& argument : copies) argv.push_back(argument.data());

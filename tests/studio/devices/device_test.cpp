@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -377,6 +378,25 @@ TEST_F(DeviceSession, WhatAFloodBringsIsBoundedInATickAndInTheSession) {
     events += source.take_events().size();
   }
   EXPECT_LE(events, 5u);
+}
+
+TEST_F(DeviceSession, AHandThatMovesForSecondsWithinTwoMillimetresOfTheOriginMaySendMetres) {
+  const auto story_of = [&](bool may_mean_metres, double scale, double sway_m, Vec3 beside = {}) {
+    devices::DeviceSettings settings;
+    settings.may_mean_metres = may_mean_metres, settings.map.scale = scale;
+    start(settings);
+    device_->waiting.clear();
+    for (int i = 0; i < 4000; ++i) hold(beside + Vec3{sway_m * std::sin(i * 2e-3), 0, 0}, 1);
+    return story();
+  };
+  const std::string said = story_of(true, 1, 2e-4);
+  EXPECT_EQ(said.find("note: all places of the hand so far lie within 2 mm of the device's origin"), 0u) << said;
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  EXPECT_EQ(story_of(true, 1000, 2e-4), "") << "it was told";
+  EXPECT_EQ(story_of(true, 1, 0.05), "") << "a hand that moves as far as hands do";
+  EXPECT_EQ(story_of(true, 1, 1e-5), "") << "a hand that rests at the origin";
+  EXPECT_EQ(story_of(true, 1, 2e-4, {0, 0, 0.05}), "") << "a still hand elsewhere";
+  EXPECT_EQ(story_of(false, 1, 2e-4), "") << "a page's hand, which has a unit";
 }
 
 TEST_F(DeviceSession, ASecondDeviceIsNotedAndNothingElse) {

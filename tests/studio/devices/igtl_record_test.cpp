@@ -209,6 +209,22 @@ TEST_F(IgtlRecord, WhileAnotherDeviceThanTheNamedOneSendsItsNameIsSaid) {
   EXPECT_EQ(program.outcome().code, 0);
 }
 
+TEST_F(IgtlRecord, ADeviceThatSendsMetresIsToldOfWhileItIsRecordedAndInTheSession) {
+  RunningProgram program(listening(), folder_.path());
+  const int port = port_of(program);
+  ASSERT_GT(port, 0);
+  IgtlPeer peer = IgtlPeer::connect(port);
+  const std::string warning = "warning: all places of the hand so far lie within 2 mm of the device's origin";
+  int sent = 0;
+  EXPECT_TRUE(program.wait_until([&] {
+    (void)peer.send(transform_bytes({0, 0, 0.1 * std::sin(0.01 * ++sent)}));
+    return holds(testing::slurp(folder_.path() / ".stderr"), warning);
+  }));
+  program.interrupt();
+  EXPECT_EQ(program.outcome().code, 0);
+  EXPECT_TRUE(holds(ctpm({"info", "a.ctpm"}), "a device that sends metres needs a scale of 1000"));
+}
+
 TEST_F(IgtlRecord, OptionsOfADeviceAreRefusedWhereNoneIsAskedFor) {
   const ProgramOutcome outcome = run_ctpm({"record", "block.json", "-o", "a.ctpm", "--fast", "--device-tool", "ball",
                                            "--igtl-name", "Stylus", "--device-second-tip", "0", "0", "1"},

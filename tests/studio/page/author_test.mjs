@@ -364,4 +364,19 @@ step("each label that is chosen of a segmentation becomes an organ, also of a sc
   assert.equal(await text(), before);
 });
 
+step("an upload goes with its page, also before the program was asked to import it", async () => {
+  await page.evaluate(() => {
+    const send = WebSocket.prototype.send;
+    WebSocket.prototype.send = function (message) {
+      if (!String(message).includes("scene.import")) send.call(this, message);
+    };
+  });
+  await drop("gone.obj", largeMesh(2000, 0.1));
+  await button("Import", "aside").click();
+  const left = () => readdirSync(folder).filter((name) => name.startsWith("gone"));
+  assert.deepEqual(await until(left, (names) => names.includes("gone.obj")), ["gone.obj"]);
+  await page.goto("about:blank");
+  assert.deepEqual(await until(left, (names) => names.length === 0), []);
+});
+
 step("nothing was complained about", () => assert.deepEqual(studio.complaints, []));

@@ -182,7 +182,10 @@ step("a device leads, and the page looks on", async () => {
   await picture(page, "train-device-awaited");
   const device = await openDevice(Number((await page.locator(".empty h2").innerText()).match(/:(\d+)/)[1]));
   let at = 0;
-  const hand = setInterval(() => device.move([0, 0, -20 * (1 - Math.cos(at++ / 40))]), 10);
+  const sway = () => 1 - Math.cos(at++ / 40), metres = setInterval(() => device.move([0, 0, -0.2 * sway()]), 10);
+  await page.waitForSelector("aside .warning:has-text('a device that sends metres needs a scale of 1000')");
+  clearInterval(metres);
+  const hand = setInterval(() => device.move([0, 0, -20 * sway()]), 10);
   await untilFelt(page);
   assert.equal(await page.locator(".view .empty").count(), 0);
   // The mouse looks around.

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "tests/studio/output/short_files.h"
 #include "tests/studio/render/scene.h"
 
 namespace ctpm::render_test {
@@ -224,7 +225,7 @@ TEST(Png, IsReadBackAsWritten) {
   render::DrawOptions options;
   options.camera = render::default_camera(scene->view);
   const render::Frame frame = make_renderer(*scene)->draw(rest_state(scene->model), options);
-  const std::string path = testing::TempDir() + "/render_picture.png";
+  const std::string path = ::testing::TempDir() + "/render_picture.png";
   ASSERT_TRUE(render::write_png(path, frame));
   const auto back = render::read_png(path);
   ASSERT_TRUE(back);
@@ -232,15 +233,28 @@ TEST(Png, IsReadBackAsWritten) {
   std::filesystem::remove(path);
 }
 
+TEST(Png, ADiskThatTakesNoMoreIsAnErrorWithItsReasonAndLeavesNothing) {
+  const std::string folder = ::testing::TempDir() + "/full_folder";
+  std::filesystem::create_directory(folder);
+  const auto written = [&] {
+    const testing::ShortFiles full(100);
+    return render::write_png(folder + "/a.png", render::blank_frame(400, 400, 1, 2, 3));
+  }();
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.errors()[0].message, "cannot be written: File too large");
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+  std::filesystem::remove(folder);
+}
+
 TEST(Png, BadTargetIsAnErrorAndLeavesNothing) {
-  const std::string folder = testing::TempDir() + "/no_such_folder";
+  const std::string folder = ::testing::TempDir() + "/no_such_folder";
   const auto missing = render::write_png(folder + "/a.png", render::blank_frame(4, 4, 1, 2, 3));
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.errors()[0].where, folder + "/a.png");
   EXPECT_FALSE(std::filesystem::exists(folder));
-  EXPECT_FALSE(render::write_png(testing::TempDir() + "/a.jpg", render::blank_frame(4, 4, 1, 2, 3)));
-  EXPECT_FALSE(render::write_png(testing::TempDir() + "/a.png", render::Frame{}));
-  EXPECT_FALSE(std::filesystem::exists(testing::TempDir() + "/a.png"));
+  EXPECT_FALSE(render::write_png(::testing::TempDir() + "/a.jpg", render::blank_frame(4, 4, 1, 2, 3)));
+  EXPECT_FALSE(render::write_png(::testing::TempDir() + "/a.png", render::Frame{}));
+  EXPECT_FALSE(std::filesystem::exists(::testing::TempDir() + "/a.png"));
 }
 
 }  // namespace

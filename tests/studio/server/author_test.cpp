@@ -1,7 +1,6 @@
 // A scene that a client of the protocol works on.
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,8 @@
 #include <thread>
 
 #include "importers/text.h"
+#include "tests/studio/commands/running_program.h"
+#include "tests/studio/output/short_files.h"
 #include "tests/studio/server/serving.h"
 
 namespace ctpm {
@@ -19,6 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::Serving;
+using testing::ShortFiles;
 using testing::SocketClient;
 using testing::stopped;
 using testing::value_at;
@@ -203,27 +205,6 @@ TEST_F(AuthorTest, FillingAndMeasuringTellHowFarTheyAre) {
   EXPECT_LT(measured.back().first, measured.back().second);
 }
 
-/// Files that this process writes may not be longer meanwhile [bytes]; a write beyond it is an error.
-class ShortFiles {
- public:
-  explicit ShortFiles(rlim_t most) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit now = before_;
-    now.rlim_cur = most;
-    setrlimit(RLIMIT_FSIZE, &now);
-  }
-  ~ShortFiles() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-  ShortFiles(const ShortFiles&) = delete;
-  ShortFiles& operator=(const ShortFiles&) = delete;
-
- private:
-  void (*handler_)(int);
-  rlimit before_{};
-};
-
 TEST_F(AuthorTest, AWriteThatFailsInTheMiddleLeavesTheSceneWhole) {
   const Serving serving(folder_.path());
   SocketClient client(serving);
@@ -315,8 +296,10 @@ TEST_F(AuthorTest, AWideHoleIsRefusedByItsNameInTheFolderAndClosedOnRequest) {
 
 class UploadTest : public AuthorTest {
  protected:
-  void upload(const std::string& name, const std::string& bytes) const {
-    const std::string more = serving_.bearer() + "Content-Length: " + std::to_string(bytes.size()) + "\r\n";
+  /// `page`: the one that sends it; empty: a program does.
+  void upload(const std::string& name, const std::string& bytes, const std::string& page = "") const {
+    const std::string of_page = page.empty() ? "" : "Ctpm-Page: " + page + "\r\n";
+    const std::string more = serving_.bearer() + of_page + "Content-Length: " + std::to_string(bytes.size()) + "\r\n";
     const std::string answer =
         testing::response_to(serving_.port(), serving_.head("PUT /upload/" + name, more) + bytes);
     ASSERT_EQ(testing::status_of(answer), 201) << answer;
@@ -381,6 +364,81 @@ TEST_F(UploadTest, NothingStaysOfATryWhosePageIsGone) {
   }
   EXPECT_TRUE(goes("holed.obj"));
   EXPECT_FALSE(is_there("made.json"));
+}
+
+/// What a page offers that calls itself by that name.
+std::string called(const std::string& page) { return std::string(server::kSubprotocol) + ", page." + page; }
+
+TEST_F(UploadTest, AnUploadGoesWithItsPageBeforeAnyImport) {
+  SocketClient other(serving_, called("other"));
+  {
+    SocketClient page(serving_, called("one"));
+    upload("mine.obj", "mesh", "one"), upload("changed.obj", "mesh", "one"), upload("program.obj", "mesh");
+    upload("others.obj", "mesh", "other");
+    EXPECT_TRUE(page.call("scene.presets", nlohmann::json::object()).contains("result"));
+    EXPECT_TRUE(is_there("mine.obj"));
+    std::ofstream(folder_.path() / "changed.obj") << "by its author";
+  }
+  EXPECT_TRUE(goes("mine.obj"));
+  // One that is whole when its page is gone already.
+  upload("late.obj", "mesh", "one");
+  EXPECT_TRUE(goes("late.obj"));
+  for (const char* name : {"changed.obj", "program.obj", "others.obj"}) EXPECT_TRUE(is_there(name)) << name;
+}
+
+TEST_F(UploadTest, ADiskThatTakesNoMoreIsToldAndKeepsNothingOfTheFile) {
+  const ShortFiles full(1000);
+  const std::string bytes(100000, 'm');
+  const std::string answer = testing::response_to(
+      serving_.port(), serving_.head("PUT /upload/a.obj",
+                                     serving_.bearer() + "Content-Length: " + std::to_string(bytes.size()) + "\r\n") +
+                           bytes);
+  EXPECT_EQ(testing::status_of(answer), 507) << answer;
+  EXPECT_NE(answer.find("nothing of the file was kept: File too large"), std::string::npos) << answer;
+  EXPECT_EQ(folder_.list().find("a.obj"), std::string::npos) << folder_.list();
+}
+
+TEST_F(UploadTest, TheNextStudioRemovesWhatAKilledOneLeft) {
+  const auto put = [&](int port, const std::string& token, const std::string& name, const std::string& announced) {
+    return "PUT /upload/" + name + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) +
+           "\r\nAuthorization: Bearer " + token + "\r\nCtpm-Page: one\r\nContent-Length: " + announced + "\r\n\r\nmesh";
+  };
+  const auto parts = [&] {
+    const std::string names = folder_.list();
+    return names.find("part.obj.part-") != std::string::npos;
+  };
+  text_["organs"][0]["mesh"] = "named.obj";
+  std::ofstream(folder_.path() / "user.json") << text_.dump();
+  {
+    testing::RunningProgram program({"studio", "--no-open", "--port", "0"}, folder_.path());
+    std::string address;
+    ASSERT_TRUE(program.wait_until(
+        [&] { return (address = testing::slurp(folder_.path() / ".stdout")).find('\n') != std::string::npos; }));
+    const int port = std::stoi(address.substr(address.rfind(':') + 1));
+    const std::string token = address.substr(address.find('=') + 1, 64);
+    SocketClient page(port, token, called("one"));
+    for (const char* name : {"left.obj", "changed.obj", "named.obj"})
+      ASSERT_EQ(testing::status_of(testing::response_to(port, put(port, token, name, "4"))), 201);
+    const testing::RawClient slow(port);
+    slow.send(put(port, token, "part.obj", "400"));
+    ASSERT_TRUE(program.wait_until(parts));
+    ::kill(program.process(), SIGKILL);
+  }
+  std::ofstream(folder_.path() / "changed.obj") << "by its author";
+  std::ofstream(folder_.path() / "left.obj.part-users") << "another one's";
+  ASSERT_TRUE(is_there("left.obj"));
+  { const Serving next(folder_.path()); }
+  EXPECT_FALSE(is_there("left.obj") || parts());
+  for (const char* name : {"changed.obj", "named.obj", "left.obj.part-users", "kidney.json"})
+    EXPECT_TRUE(is_there(name)) << name;
+  EXPECT_EQ(folder_.list().find("ctpm-uploads"), std::string::npos) << folder_.list();
+}
+
+TEST_F(UploadTest, AnotherStudioOfTheFolderLeavesTheUploadsOfOneThatRuns) {
+  SocketClient page(serving_, called("one"));
+  upload("mine.obj", "mesh", "one");
+  { const Serving next(folder_.path()); }
+  EXPECT_TRUE(is_there("mine.obj"));
 }
 
 TEST_F(AuthorTest, ATextOutsideOfTheFolderIsRefused) {

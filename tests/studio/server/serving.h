@@ -128,17 +128,19 @@ inline std::string body_of(const std::string& response) {
 class SocketClient {
  public:
   explicit SocketClient(const Serving& serving, const std::string& subprotocol = std::string(server::kSubprotocol))
-      : socket_(context_) {
+      : SocketClient(serving.port(), serving.token(), subprotocol) {}
+  SocketClient(int port, const std::string& token, const std::string& subprotocol) : socket_(context_) {
+    const std::string host = "127.0.0.1:" + std::to_string(port);
     namespace beast = boost::beast;
     beast::get_lowest_layer(socket_).connect(
-        boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4::loopback(), std::uint16_t(serving.port())));
+        boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4::loopback(), std::uint16_t(port)));
     beast::get_lowest_layer(socket_).socket().set_option(boost::asio::ip::tcp::no_delay(true));  // as browsers do
     socket_.set_option(beast::websocket::stream_base::decorator([&](beast::websocket::request_type& request) {
-      request.set(beast::http::field::sec_websocket_protocol, subprotocol + ", token." + serving.token());
-      request.set(beast::http::field::origin, serving.origin());
+      request.set(beast::http::field::sec_websocket_protocol, subprotocol + ", token." + token);
+      request.set(beast::http::field::origin, "http://" + host);
     }));
     socket_.read_message_max(64u << 20);
-    socket_.handshake(serving.host(), "/socket");
+    socket_.handshake(host, "/socket");
   }
 
   /// The kernel keeps little of what this client does not read.

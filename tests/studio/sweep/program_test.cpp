@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -131,6 +132,43 @@ TEST_F(SweepProgram, SaysAllMistakesWhereTheyAreAndWritesNothing) {
   EXPECT_FALSE(fs::exists(out()));
 }
 
+TEST_F(SweepProgram, SaysAMissingFileWithEverythingElse) {
+  testing::write_rig(folder());
+  fs::remove(folder() / "press.json");
+  const auto refused = [&](const std::string& vary, const std::vector<std::string>& parts) {
+    testing::write_sweep(folder(), vary);
+    const ProgramOutcome planned = run({"plan", "sweep.json", "-o", "rig.json"});
+    EXPECT_EQ(planned.code, 2);
+    for (const std::string& part : parts)
+      EXPECT_NE(planned.err.find(part), std::string::npos) << part << "\nin\n" << planned.err;
+    EXPECT_EQ(testing::lines_of(planned.err).size(), parts.size()) << planned.err;
+  };
+  const std::string missing = "press.json: error: does not exist", no_folder = "rig.json: error:";
+  refused(R"("vary": [{"key": "/organs/0/material/stiffness_scale", "values": [1, -1]}])",
+          {"/vary/0/values/1: got -1, must be in ", missing, no_folder});
+  refused(R"("vary": [{"key": "/organs/0/material/stiffness_scale", "values": []}])", {"/vary/0", missing, no_folder});
+  // Where the scene is missing, the script is judged as far as it can be.
+  testing::write_rig(folder());
+  fs::remove(folder() / "rig.json");
+  testing::write(folder() / "press.json", R"({"format": "ctpm-script", "version": 1, "steps": [{"wait_s": -1}]})");
+  refused(R"("vary": [{"key": "/organs/0/material/stiffness_scale", "values": [1, 2]}])",
+          {"rig.json: error: does not exist", "/steps/0/wait_s: got -1"});
+}
+
+TEST_F(SweepProgram, ASliceOfNoSessionIsRefused) {
+  testing::write_rig(folder());
+  testing::write_sweep(folder(), R"("vary": [{"key": "/organs/0/material/stiffness_scale", "values": [1, 2]}])");
+  ASSERT_EQ(run({"plan", "sweep.json", "-o", "out"}).code, 0);
+  const ProgramOutcome refused = run({"run", "out", "--from", "3", "--to", "2"});
+  EXPECT_EQ(refused.code, 2);
+  for (const char* part : {"--from: error: is beyond --to", "--from: error: got 3, and the plan has 2 sessions"})
+    EXPECT_NE(refused.err.find(part), std::string::npos) << refused.err;
+  EXPECT_EQ(status(), "../out: 0 of 2 done, 2 waiting\n");
+  // The last element of an array may reach beyond the plan.
+  EXPECT_EQ(run({"run", "out", "--from", "2", "--to", "9"}).code, 0);
+  EXPECT_EQ(status(), "../out: 1 of 2 done, 1 waiting\n");
+}
+
 TEST_F(SweepProgram, AFolderThatIsMissingIsToldFromOneWithoutAPlan) {
   fs::create_directory(folder() / "empty");
   for (const char* verb : {"run", "status", "collect", "retry"}) {
@@ -217,7 +255,9 @@ TEST_F(SweepProgram, KeepsFailedSessionsVisible) {
   const ProgramOutcome ran = run({"run", "out"});
   EXPECT_EQ(ran.code, 1);
   EXPECT_NE(ran.out.find("out: 1 of 2 done, 1 failed\nfailed: session 2, "), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("holds no sphere"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("rig.json:24:9: error: /organs/0/anchors/0: holds no sphere (with x_mm = -99 0 0)"),
+            std::string::npos)
+      << ran.out;
   EXPECT_EQ(run({"collect", "out"}).code, 2);
   EXPECT_EQ(run({"collect", "out", "--incomplete"}).code, 1);
   const std::vector<std::string> rows = testing::lines_of(slurp(out() / "results.csv"));
@@ -226,6 +266,21 @@ TEST_F(SweepProgram, KeepsFailedSessionsVisible) {
   const std::string page = slurp(out() / "report.html");
   EXPECT_NE(page.find("1 of 2 done, 1 failed."), std::string::npos);
   EXPECT_NE(page.find("Sessions without a result"), std::string::npos);
+}
+
+TEST_F(SweepProgram, AFailedSessionNamesTheLineOfTheAuthorsFileAndTheValues) {
+  testing::write_rig(folder());
+  // On one line the values before it move it in the session's text.
+  std::string scene = slurp(folder() / "rig.json");
+  std::replace(scene.begin(), scene.end(), '\n', ' ');
+  testing::write(folder() / "rig.json", scene);
+  testing::write_sweep(folder(), R"("vary": [{"key": "/organs/0/fill/gap_mm", "values": [4, 5.015625]}])");
+  ASSERT_EQ(run({"plan", "sweep.json", "-o", "out"}).code, 0);
+  const ProgramOutcome ran = run({"run", "out"});
+  EXPECT_EQ(ran.code, 1);
+  const std::string column = std::to_string(scene.find("{ \"sphere\": { \"centre_mm\": [-24") + 1);
+  EXPECT_NE(ran.out.find("rig.json:1:" + column + ": error: /organs/0/anchors/0"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("(with gap_mm = 5.015625)"), std::string::npos) << ran.out;
 }
 
 TEST_F(SweepProgram, PlannedAgainKeepsWhatDidNotChangeAndRefusesWhatDid) {
