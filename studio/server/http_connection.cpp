@@ -11,6 +11,7 @@
 #include "studio/server/page.h"
 #include "studio/server/subprotocol.h"
 #include "studio/server/text.h"
+#include "studio/server/upload_list.h"
 #include "studio/server/web_client.h"
 
 namespace ctpm::server {
@@ -197,7 +198,7 @@ void HttpConnection::take_upload(const std::string& name) {
   if (std::filesystem::exists(*place, ignored)) return refuse(http::status::conflict, name + " exists already");
   auto body = std::make_shared<http::request_parser<http::file_body>>(std::move(*head_));
   body->body_limit(services_.limits.most_upload);
-  const Upload upload{*place + ".part-" + make_token().substr(0, 8), *place, std::string(view_of(body->get()[kPage]))};
+  const Upload upload{*place + kPart + make_token().substr(0, 8), *place, std::string(view_of(body->get()[kPage]))};
   services_.listed.add(upload.part, {});
   beast::error_code failure;
   body->get().body().open(upload.part.c_str(), beast::file_mode::write_new, failure);

@@ -39,6 +39,14 @@ std::vector<ListedUpload> read_list(const std::string& text) {
   return uploads;
 }
 
+/// Whether a file is what a list names as it was left. A list from a stranger may name any file without a stamp; only
+/// what is no whole file is taken for one that grew still.
+bool is_as_left(const std::string& file, const std::string& stamp) {
+  if (stamp.empty()) return fs::path(file).filename().string().find(kPart) != std::string::npos;
+  const std::optional<KnownFiles::Stamp> now = KnownFiles::stamp_of(file);
+  return now && stamp == text_of(*now);
+}
+
 /// Removes what a list names. False: which files name others is not known, so that all stays.
 bool remove_listed(const Folder& folder, const std::string& list) {
   const Result<std::string> text = output::read_text_file(list);
@@ -46,10 +54,8 @@ bool remove_listed(const Folder& folder, const std::string& list) {
   if (!text || !all) return false;
   for (const ListedUpload& upload : read_list(*text)) {
     const Result<std::string> file = folder.find(upload.path);
-    const std::optional<KnownFiles::Stamp> stamp = file ? KnownFiles::stamp_of(*file) : std::nullopt;
     std::error_code ignored;
-    if (stamp && (upload.stamp.empty() || upload.stamp == text_of(*stamp)) && user_of_mesh(*file, *all).empty())
-      fs::remove(*file, ignored);
+    if (file && is_as_left(*file, upload.stamp) && user_of_mesh(*file, *all).empty()) fs::remove(*file, ignored);
   }
   return true;
 }

@@ -8,6 +8,9 @@
 
 namespace ctpm::server {
 
+/// In the name of an upload that is not whole yet.
+inline constexpr const char* kPart = ".part-";
+
 /// The uploads of one run that go with their pages, in a hidden file of the folder. The file is locked as long as the
 /// run lasts, so that the next one knows a list whose run was killed, and removes what is left of its uploads.
 class UploadList {

@@ -230,6 +230,25 @@ inline constexpr GoldenRow kGoldenRevision17[] = {
     {"fine mesh, sdirk2", {0x0deb52955a7f94bc, 0xcd0834d3da93624f, 0x7a73a7965dde6d5c, 0x394013e0edf693f8}},
 };
 
+inline constexpr GoldenRow kGoldenRevision18[] = {
+    {"full, sdirk2", {0x6ea36172c291d416, 0x28c7a22f71fa0d6e, 0x0fac038bb4ce2238, 0x54c49f51d9160b69}},
+    {"wedge, sdirk2", {0x6ea36172c291d416, 0x28c7a22f71fa0d6e, 0xce325186f67a2983, 0xf15e61d0419028c6}},
+    {"crumbs, sdirk2", {0xc9cff25ee39accfa, 0x7d40b15903d27ca0, 0x3e6e7093b50a3f24, 0x3288adf1ec7cff40}},
+    {"light, sdirk2", {0x3e3014ff5c07bebd, 0x61d4a96c854a89ea, 0x2e94aed372e2e8d8, 0x7aef5f074211e577}},
+    {"resisting, sdirk2", {0x6899f40c7801179c, 0xf766374616859eb5, 0x3180feae6141686f, 0xf1524fc1ff2be7a6}},
+    {"skinned, sdirk2", {0xb9afbe8c4d1d969f, 0x308d704159429bd0, 0xa56f73ff2ab4aef5, 0xe67a512010328272}},
+    {"touched cut, sdirk2", {0xfff94fb4d8b04cb2, 0x9c3ab6f566ffcb22, 0xab39169340c55d1f, 0xb01e518b2ce63263}},
+    {"touched slice, sdirk2", {0x7f2b67ca4ea3f792, 0xfa0514df994c3eb0, 0x843d60ce3c8c6d87, 0x515115f11d1f49aa}},
+    {"touched tear, sdirk2", {0x7f2b67ca4ea3f792, 0xd38c18f8b4227a0c, 0xd037f8a86ee90194, 0x958e69d555874cc9}},
+    {"touched bridge, auto", {0xc651e673aaed1229, 0xe9e40072544d0154, 0x5158d74c1e8e3d34, 0xb26a17d7861faedc}},
+    {"touched bridge, sdirk2", {0x7f2b67ca4ea3f792, 0x0b74c9e55486259b, 0x2715ee5a27e686bf, 0x8e5c882838eadc3f}},
+    {"touched plane, auto", {0x05c70d5366a0e86f, 0x8387584449065cec, 0x13826faecd58d325, 0x7cf5913f8b96312a}},
+    {"touched plane, sdirk2", {0x943a47562b9eb657, 0xe532eaa507a2ec22, 0x6228cbce96be887f, 0xe550f5bb389186b4}},
+    {"touched edge, sdirk2", {0x4e25e343a3f4899d, 0xfb43f3c94afbfcf2, 0x650568df146b82b5, 0x15f3bb88377ffa00}},
+    {"two hands, sdirk2", {0x2dd376e2afb8ca46, 0x4b8af5b88a0ea494, 0xbb3a72eb1d710295, 0x53aec9069f5d9d65}},
+    {"fine mesh, sdirk2", {0xfbc106aac38946d1, 0xfb23e1304eedba24, 0x416142254c0f4879, 0xbed2098026f775ab}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},   {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189},   {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
@@ -239,7 +258,7 @@ inline constexpr GoldenRevision kGoldenRevisions[] = {
     {11, kGoldenRevision11, 0x4162fa4fa1d24cae}, {12, kGoldenRevision12, 0x1a990242ddda6fc4},
     {13, kGoldenRevision13, 0xa5637b24229bb1f2}, {14, kGoldenRevision14, 0x463cb460f23844de},
     {15, kGoldenRevision15, 0xc7644e74b0d461e5}, {16, kGoldenRevision16, 0x304838863b606220},
-    {17, kGoldenRevision17, 0x47d495b0831911b},
+    {17, kGoldenRevision17, 0x47d495b0831911b},  {18, kGoldenRevision18, 0xac4f1d0ea3bd634b},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

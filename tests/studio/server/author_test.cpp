@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <fstream>
 #include <set>
+#include <string_view>
 #include <thread>
 
 #include "importers/text.h"
@@ -432,6 +433,14 @@ TEST_F(UploadTest, TheNextStudioRemovesWhatAKilledOneLeft) {
   for (const char* name : {"changed.obj", "named.obj", "left.obj.part-users", "kidney.json"})
     EXPECT_TRUE(is_there(name)) << name;
   EXPECT_EQ(folder_.list().find("ctpm-uploads"), std::string::npos) << folder_.list();
+}
+
+TEST_F(UploadTest, AListFromAStrangerRemovesNoFileOfTheUsers) {
+  std::ofstream(folder_.path() / "mine.ctpm") << "a session";
+  std::ofstream(folder_.path() / ".ctpm-uploads-stranger", std::ios::binary)
+      << std::string_view("mine.ctpm\0\0kidney.json\0\0../kidney.json\0\0", 40);
+  { const Serving next(folder_.path()); }
+  EXPECT_TRUE(is_there("mine.ctpm") && is_there("kidney.json"));
 }
 
 TEST_F(UploadTest, AnotherStudioOfTheFolderLeavesTheUploadsOfOneThatRuns) {
