@@ -247,6 +247,10 @@ inline constexpr GoldenRow kGoldenRevision18[] = {
     {"touched edge, sdirk2", {0x4e25e343a3f4899d, 0xfb43f3c94afbfcf2, 0x650568df146b82b5, 0x15f3bb88377ffa00}},
     {"two hands, sdirk2", {0x2dd376e2afb8ca46, 0x4b8af5b88a0ea494, 0xbb3a72eb1d710295, 0x53aec9069f5d9d65}},
     {"fine mesh, sdirk2", {0xfbc106aac38946d1, 0xfb23e1304eedba24, 0x416142254c0f4879, 0xbed2098026f775ab}},
+    {"ctpm, sdirk2", {0x6899f40c7801179c, 0x73fb27f2c577f149, 0x5c9f5790d6ca71ff, 0x43f589910cc09c2a}},
+    {"full, auto", {0xb6c71a93224b3c05, 0x532dc5c79cc197c6, 0x96234d85fe4e805a, 0x4c8aebf7e947abc4}},
+    {"wedge, auto", {0xb6c71a93224b3c05, 0x532dc5c79cc197c6, 0xfd32b4f8bf51c431, 0x3f7d5218206103cc}},
+    {"crumbs, auto", {0xfc79f730a0b68a42, 0xa173afeacad1bb38, 0x11c8e4685a0603e1, 0xf59e732ac9072487}},
 };
 
 inline constexpr GoldenRevision kGoldenRevisions[] = {
@@ -258,7 +262,7 @@ inline constexpr GoldenRevision kGoldenRevisions[] = {
     {11, kGoldenRevision11, 0x4162fa4fa1d24cae}, {12, kGoldenRevision12, 0x1a990242ddda6fc4},
     {13, kGoldenRevision13, 0xa5637b24229bb1f2}, {14, kGoldenRevision14, 0x463cb460f23844de},
     {15, kGoldenRevision15, 0xc7644e74b0d461e5}, {16, kGoldenRevision16, 0x304838863b606220},
-    {17, kGoldenRevision17, 0x47d495b0831911b},  {18, kGoldenRevision18, 0xac4f1d0ea3bd634b},
+    {17, kGoldenRevision17, 0x47d495b0831911b},  {18, kGoldenRevision18, 0x519dbe9952522cb},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.
