@@ -38,7 +38,7 @@ constexpr double kOntoCut = 1.5, kSideSteps = 1.7321;
 /// A place follows the frames of its own spheres wholly where they count for so much in sum (our choice); one that is
 /// half of the reach away counts 0.56. With less, the surface of a thin strip is stretched where it goes from the
 /// spheres within reach over to those nearest along the strip: from 0.3 to 1.5 the triangles that strokes stretched
-/// more than six times fell from 480 to 68 in strips of half a spacing.
+/// more than six times fell from 473 to 68 in a liver's strip of half a spacing.
 constexpr double kEnough = 1.5;
 
 /// How far the spheres are that tell how the tissue around one turns: no farther than elements reach, so that a sharp

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/stepping/integrator.h"
+#include "core/stepping/motion.h"
 
 namespace ctpm::stepping {
 namespace {
@@ -25,10 +26,8 @@ ImplicitSolve::ImplicitSolve(const StepContext& context)
       velocity_(3 * context.model.sphere_count()),
       blocks_(6 * context.model.sphere_count()) {
   const Model& model = context.model;
-  double total_mass = 0;
-  for (const double mass : model.mass) total_mass += mass;
   limits_.relative = model.solver.tolerance;
-  limits_.absolute = model.solver.velocity_floor * std::sqrt(total_mass);
+  limits_.absolute = model.solver.velocity_floor * std::sqrt(total_mass(model));
   limits_.max_iterations = model.solver.max_iterations;
 }
 

@@ -9,6 +9,12 @@ constexpr std::vector<double> Vec3Array::*kAxes[3] = {&Vec3Array::x, &Vec3Array:
 
 }  // namespace
 
+double total_mass(const Model& model) {
+  double total = 0;
+  for (const double mass : model.mass) total += mass;
+  return total;
+}
+
 void commit(Motion& motion, State& state) {
   std::swap(state.position, motion.position), std::swap(state.velocity, motion.velocity);
   std::swap(state.kelvin_elongation, motion.kelvin_elongation);

@@ -25,6 +25,9 @@ struct Motion {
   contact::Touched touched;               ///< State::touched and what belongs to it
 };
 
+/// Of all spheres [kg].
+double total_mass(const Model& model);
+
 /// Swaps the arrays of `motion` with those of `state`. Never allocates.
 void commit(Motion& motion, State& state);
 

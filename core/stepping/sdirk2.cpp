@@ -61,11 +61,10 @@ void find_slope(const StepContext& context, const Vec3Array& from, const Vec3Arr
   });
 }
 
-/// Kinetic energy of all spheres at a velocity [J], twice.
-double energy_at(const Model& model, double velocity) {
-  double mass = 0;
-  for (const double m : model.mass) mass += m;
-  return mass * velocity * velocity;
+/// The kinetic energy that a predictor may always miss [J], twice.
+double left_undone_in(const Model& model) {
+  const double velocity = kLeftUndone * model.solver.velocity_floor;
+  return total_mass(model) * velocity * velocity;
 }
 
 double shortest_element_of(const Model& model) {
@@ -82,7 +81,7 @@ Sdirk2::Sdirk2(const StepContext& context, ImplicitSolve& solve)
       fallback_(context, solve),
       check_(context),
       shortest_element_(shortest_element_of(context.model)),
-      left_undone_(energy_at(context.model, kLeftUndone * context.model.solver.velocity_floor)),
+      left_undone_(left_undone_in(context.model)),
       predicted_(context.model),
       second_start_(context.model),
       change_(3 * context.model.sphere_count()) {}
