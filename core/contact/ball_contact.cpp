@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/contact/contact_law.h"
+#include "core/surface/line_hit.h"
 #include "core/surface/surface.h"
 
 namespace ctpm::contact {
@@ -22,6 +23,11 @@ constexpr int kMostDivisions = 8;
 
 /// A surface that the ball left farther behind than so many of its radii is not touched any more.
 constexpr double kDeepest = 12;
+
+/// A line upwards from a ball's centre, beside it by this part of its radius (our choice): there it does not run along
+/// the edges of a regular mesh.
+constexpr Vec3 kBeside{1.3e-3, 0.7e-3, 0};
+constexpr Vec3 kUpwards{0, 0, 1};
 
 /// Where the walls of a cut are nearer to each other than this part of the ball's radius, they count less, and not at
 /// all where they touch (our choice): a ball that presses on a closed cut dents its lips, and does not wedge it open.
@@ -59,6 +65,15 @@ void for_each_part(int n, const Visit& visit) {
       if (i + j + 1 < n) visit((3 * (n - i - j) - 4) * unit, (3 * i + 2) * unit, (3 * j + 2) * unit);
     }
 }
+
+/// What a line upwards from a point may meet.
+struct Above {
+  Vec3 from;
+  bool meets(const Box& box) const {
+    return box.low.x <= from.x && from.x <= box.high.x && box.low.y <= from.y && from.y <= box.high.y &&
+           from.z <= box.high.z;
+  }
+};
 
 bool may_touch(const Vec3* corners, Vec3 centre, double radius) {
   const auto is_apart = [&](double a, double b, double c, double at) {
@@ -135,10 +150,18 @@ void BallContact::mark_touched(const StateView& state, const BallMotion& ball, s
 }
 
 /// Whether patches may stand for parts of a triangle.
-bool BallContact::is_hidden(const Part& part, const surface::NearSurface::Triangle& triangle) const {
+bool BallContact::may_be_hidden(const Part& part, const surface::NearSurface::Triangle& triangle) const {
   return part.patch == nullptr && cuts_.any() &&
          std::any_of(std::begin(triangle.corner), std::end(triangle.corner),
                      [&](std::int32_t corner) { return cuts_.hides(part.first_slot + corner); });
+}
+
+/// Whether a patch stands for a place in a triangle, given by its barycentric coordinates.
+bool BallContact::is_hidden(const Part& part, const surface::NearSurface::Triangle& triangle,
+                            const double* weights) const {
+  Vec3 rest;
+  for (std::size_t c = 0; c < 3; ++c) rest += weights[c] * part.surface->rest(triangle.corner[c]);
+  return cuts_.covers(std::size_t(organ_of(part, part.first_slot + triangle.corner[0])), rest);
 }
 
 void BallContact::find(const StateView& state, const BallMotion& ball, PointContacts& contacts) {
@@ -177,7 +200,9 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
   Reach reach = reach_of(state, ball);
   if (!own_.empty()) {
     own_.begin(state.position);
-    if (cuts_.wait_near(reach.box, state, own_)) reach = reach_of(state, ball);
+    Box asked = reach.box;
+    if (reach.distance > ball.radius) asked.high.z = std::numeric_limits<double>::infinity();  // for is_inside()
+    if (cuts_.wait_near(asked, state, own_)) reach = reach_of(state, ball);
   }
   NearTriangles& near = near_[ball.hand];
   near.find(reach, kMargin * ball.radius, state.position);
@@ -187,14 +212,49 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
   opening_.assign(slots - std::size_t(vertex_count_), -1.0);
   mark_touched(state, ball, 1);
   pressed_area_ = {};
+  beyond_.clear();
   for (const auto& [part, triangle] : near.triangles())
-    dent((*parts_)[std::size_t(part)], *triangle, ball, reach.distance);
+    if (dent((*parts_)[std::size_t(part)], *triangle, ball, reach.distance, false)) beyond_.push_back({part, triangle});
+  dent_beyond(ball, reach.distance);
   mark_touched(state, ball, 0);
   const double a = std::sqrt(norm(pressed_area_) / kPi);
   std::sort(touched_.begin(), touched_.end());
   for (const std::int32_t slot : touched_) press_slot(state, ball, slot, a, contacts);
   touched_.clear();
   parts_ = &whole_;
+}
+
+/// A surface outside the ball touches only where the ball is in the organ, deeper than the lattice follows. One that
+/// has left it may be behind a fold or an overhanging wall for as long as it likes.
+void BallContact::dent_beyond(const BallMotion& ball, double reach) {
+  std::int32_t organ = -1;
+  bool is_in = false;
+  for (const auto& [index, triangle] : beyond_) {
+    const Part& part = (*parts_)[std::size_t(index)];
+    const std::int32_t its = organ_of(part, part.first_slot + triangle->corner[0]);
+    if (its != organ) organ = its, is_in = is_inside(organ, ball.centre + ball.radius * kBeside);
+    if (is_in) dent(part, *triangle, ball, reach, true);
+  }
+}
+
+/// Whether a point is in an organ: a line from there leaves it more often than it enters.
+bool BallContact::is_inside(std::int32_t organ, Vec3 point) {
+  const Above above{point};
+  int more_exits = 0;
+  const auto count = [&](const Part& part) {
+    part.surface->near(above, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
+      if (organ_of(part, part.first_slot + triangle.corner[0]) != organ) return;
+      const auto met = surface::meet_line(point, kUpwards, std::numeric_limits<double>::infinity(), corners[0],
+                                          corners[1], corners[2]);
+      if (met && !(may_be_hidden(part, triangle) && is_hidden(part, triangle, met->at)))
+        more_exits += met->is_exit ? 1 : -1;
+    });
+  };
+  for (const Part& part : whole_) count(part);
+  cuts_.near(std::size_t(organ), above, [&](cutbody::CutPatch& patch) {
+    count({0, 0, &patch.body.surface, &patch.gathering, &patch});
+  });
+  return more_exits > 0;
 }
 
 /// Adds the contact of what was gathered at a slot, with the radius of all that the ball touches [m].
@@ -231,9 +291,10 @@ double BallContact::share_of(const Part& part, std::int32_t slot, double radius)
   return std::min(1.0, opening / (kOpen * radius));
 }
 
-/// Adds a triangle's part under the ball to its corners. `reach`: of the ball where it touched before [m].
-void BallContact::dent(const Part& part, const surface::NearSurface::Triangle& triangle, const BallMotion& ball,
-                       double reach) {
+/// Adds those parts of a triangle to its corners that are in the ball, or those that are `beyond` it and were touched,
+/// and returns whether there are others of these two kinds. `reach`: of the ball where it touched before [m].
+bool BallContact::dent(const Part& part, const surface::NearSurface::Triangle& triangle, const BallMotion& ball,
+                       double reach, bool beyond) {
   const Vec3 corners[3] = {part.surface->place(triangle.corner[0]), part.surface->place(triangle.corner[1]),
                            part.surface->place(triangle.corner[2])};
   std::int32_t vertex[3];
@@ -242,31 +303,32 @@ void BallContact::dent(const Part& part, const surface::NearSurface::Triangle& t
   for (std::size_t c = 0; c < 3; ++c) slot[c] = part.gathers_at(triangle.corner[c]);
   const bool was_touched =
       was_touched_[std::size_t(slot[0])] || was_touched_[std::size_t(slot[1])] || was_touched_[std::size_t(slot[2])];
-  // A surface outside the ball touches only where the ball has gone in deeper than the lattice follows.
-  if (!may_touch(corners, ball.centre, was_touched ? reach : ball.radius)) return;
+  if (!may_touch(corners, ball.centre, was_touched ? reach : ball.radius)) return false;
   double shares[3] = {1, 1, 1};
   for (std::size_t c = 0; c < 3 && part.patch != nullptr; ++c) shares[c] = share_of(part, vertex[c], ball.radius);
-  if (shares[0] == 0 && shares[1] == 0 && shares[2] == 0) return;
+  if (shares[0] == 0 && shares[1] == 0 && shares[2] == 0) return false;
   const Vec3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double size = norm(across), squared = ball.radius * ball.radius;
-  if (!(size > 0)) return;
+  if (!(size > 0)) return false;
   const Vec3 outward = across / size;
   const int n = std::clamp(int(std::ceil(triangle.longest_edge / (kLongestPart * ball.radius))), 1, kMostDivisions);
-  const bool may_be_hidden = is_hidden(part, triangle);
+  const bool looks_hidden = may_be_hidden(part, triangle);
+  bool has_others = false;
   for_each_part(n, [&](double w0, double w1, double w2) {
     const Vec3 apart = w0 * corners[0] + w1 * corners[1] + w2 * corners[2] - ball.centre;
     // Along the line inwards, the far side of the ball is `through` away.
     const double distance_squared = dot(apart, apart), height = dot(apart, outward);
     const double half_chord_squared = height * height - distance_squared + squared;
-    if (half_chord_squared <= 0 || (distance_squared >= squared && !(was_touched && height > 0))) return;
+    const bool is_beyond = distance_squared >= squared;
+    if (half_chord_squared <= 0 || (is_beyond && !(was_touched && height > 0))) return;
+    if (is_beyond != beyond) {
+      has_others = true;
+      return;
+    }
     const double half_chord = std::sqrt(half_chord_squared), through = height + half_chord;
     const Vec3 normal = (apart - through * outward) / ball.radius;
     const double weights[3] = {w0, w1, w2};
-    if (may_be_hidden) {
-      Vec3 rest;
-      for (std::size_t c = 0; c < 3; ++c) rest += weights[c] * part.surface->rest(triangle.corner[c]);
-      if (cuts_.covers(std::size_t(organ_of(part, vertex[0])), rest)) return;
-    }
+    if (looks_hidden && is_hidden(part, triangle, weights)) return;
     const double share = part.patch == nullptr ? 1 : w0 * shares[0] + w1 * shares[1] + w2 * shares[2];
     const double area = share * triangle.rest_area / (n * n);
     if (!(area > 0)) return;
@@ -278,6 +340,7 @@ void BallContact::dent(const Part& part, const surface::NearSurface::Triangle& t
     }
     pressed_area_ += area * normal;
   });
+  return has_others;
 }
 
 void BallContact::find_on_spheres(const StateView& state, const BallMotion& ball, PointContacts& contacts) {
@@ -323,16 +386,6 @@ void BallContact::add(const StateView& state, const BallMotion& ball, PointConta
   contact.hand = std::int32_t(ball.hand);
   press(state, model_.contact_friction, contacts.mobility(carriers), approach, ball.step, contact);
   contacts.add(contact, carriers);
-}
-
-std::int32_t BallContact::organ_of(const PointContact& contact) const {
-  if (cuts_.points().contains(contact.point)) return std::int32_t(cuts_.points().place(contact.point).organ);
-  const std::int32_t point = number_of(contact), sphere = point - vertex_count_;
-  if (point < vertex_count_) return organ_of_[std::size_t(point)];
-  for (std::size_t i = 0; i < model_.organs.size(); ++i)
-    if (sphere >= model_.organs[i].first && sphere < model_.organs[i].first + model_.organs[i].count)
-      return std::int32_t(i);
-  return -1;
 }
 
 Vec3 BallContact::rest_of(const PointContact& contact) const {

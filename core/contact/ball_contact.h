@@ -61,9 +61,6 @@ class BallContact {
   /// Where the tissue was at rest that a contact touches [m].
   Vec3 rest_of(const PointContact& contact) const;
 
-  /// The organ that a contact touches, in Model::organs; -1: none.
-  std::int32_t organ_of(const PointContact& contact) const;
-
  private:
   /// What presses on one vertex of a surface.
   struct Pressed {
@@ -83,9 +80,13 @@ class BallContact {
   std::int32_t organ_of(const Part& part, std::int32_t slot) const;
   surface::Follower follower(std::int32_t slot) const;
   void mark_touched(const StateView& state, const BallMotion& ball, std::uint8_t value);
-  bool is_hidden(const Part& part, const surface::NearSurface::Triangle& triangle) const;
+  bool may_be_hidden(const Part& part, const surface::NearSurface::Triangle& triangle) const;
+  bool is_hidden(const Part& part, const surface::NearSurface::Triangle& triangle, const double* weights) const;
   double share_of(const Part& part, std::int32_t slot, double radius);
-  void dent(const Part& part, const surface::NearSurface::Triangle& triangle, const BallMotion& ball, double reach);
+  bool dent(const Part& part, const surface::NearSurface::Triangle& triangle, const BallMotion& ball, double reach,
+            bool beyond);
+  void dent_beyond(const BallMotion& ball, double reach);
+  bool is_inside(std::int32_t organ, Vec3 point);
   static Vec3 place_of(const Part& part, std::int32_t vertex, const StateView& state);
   void press_slot(const StateView& state, const BallMotion& ball, std::int32_t slot, double radius,
                   PointContacts& contacts);
@@ -103,12 +104,13 @@ class BallContact {
   std::vector<NearTriangles> near_;           ///< of the ball in each hand
   const std::vector<Part>* parts_ = &whole_;  ///< in find() with patches of cuts
   std::int32_t vertex_count_ = 0, touchable_count_ = 0;
-  std::vector<std::int32_t> organ_of_;     ///< (vertex_count)
-  std::vector<Pressed> pressed_;           ///< (slot_count, like the next: vertices, and in find() those of patches)
-  std::vector<std::uint8_t> was_touched_;  ///< at the start of the substep
-  std::vector<double> opening_;            ///< at the vertices of patches [m]
-  std::vector<std::int32_t> touched_;      ///< slots with an area
-  Vec3 pressed_area_;                      ///< sum over the pressed areas, each along the ball's radius [m^2]
+  std::vector<std::int32_t> organ_of_;        ///< (vertex_count)
+  std::vector<Pressed> pressed_;              ///< (slot_count, like the next: vertices, and in find() those of patches)
+  std::vector<std::uint8_t> was_touched_;     ///< at the start of the substep
+  std::vector<double> opening_;               ///< at the vertices of patches [m]
+  std::vector<std::int32_t> touched_;         ///< slots with an area
+  std::vector<NearTriangles::Found> beyond_;  ///< triangles that were touched and have parts outside the ball
+  Vec3 pressed_area_;                         ///< sum over the pressed areas, each along the ball's radius [m^2]
   /// Spheres [first, last) of the organs without a surface.
   std::vector<std::pair<std::size_t, std::size_t>> bare_;
   double largest_radius_ = 0;  ///< of a sphere [m]

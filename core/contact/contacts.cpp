@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/model/result.h"
-#include "core/surface/rigid_motion.h"
 
 namespace ctpm::contact {
 
@@ -46,12 +45,8 @@ Contacts::Contacts(const Model& model, const elements::Kernels& kernels, StageWa
       cut_faces_(model),
       points_(model, pressed_capacity().first + of_cuts(model, blade_, wedge_, cut_faces_).first,
               pressed_capacity().second + of_cuts(model, blade_, wedge_, cut_faces_).second),
-      explicit_solve_(model, points_) {
-  for (const OrganRange& organ : model.organs) {
-    const auto first = model.held_axes.begin() + organ.first;
-    is_free_.push_back(std::all_of(first, first + organ.count, [](std::uint8_t axes) { return axes == 0; }));
-  }
-}
+      explicit_solve_(model, points_),
+      own_motion_(model) {}
 
 Pins Contacts::pins(const HeldTools& tools, const Vec3Array& position, double share, double h) {
   Pins pins;
@@ -73,6 +68,7 @@ void Contacts::find(const StateView& state, const HeldTools& tools, const Contac
     if (!tool.is(ToolKind::ball)) return;
     const Vec3 velocity = (tool.to - tool.from) / model_.tick;
     ball_.find(state, {tool.at(step.share), velocity, tool.tool->radius, press, hand}, points_);
+    if (points_.tool_count(hand) > 0) own_motion_.follow(state.axial_severed);
   };
   // In ascending order of points.
   find_ball(0);
@@ -121,16 +117,16 @@ double ContactSet::depth(std::size_t hand, const Vec3Array& position) const {
   const BallContact& ball = contacts_->ball_;
   double depth = 0;
   surface::RigidMotion motion;
-  std::int32_t moved = -1;  // organ that `motion` is of
+  std::int32_t moved = -1;  // piece that `motion` is of
   for (const PointContact& c : contacts_->points_.all()) {
     if (c.point < 0 || !c.is_of_hand(hand)) continue;
     Vec3 rest = ball.rest_of(c);
-    if (const std::int32_t organ = ball.organ_of(c); organ >= 0 && contacts_->is_free_[std::size_t(organ)]) {
-      if (organ != moved)
-        motion = surface::rigid_motion(contacts_->model_, contacts_->model_.organs[std::size_t(organ)], position);
-      moved = organ, rest = motion(rest);
+    const Carriers carriers = contacts_->points_.carriers(c);
+    if (const std::int32_t piece = contacts_->own_motion_.free_piece(carriers.sphere.front()); piece >= 0) {
+      if (piece != moved) motion = contacts_->own_motion_.of(piece, position);
+      moved = piece, rest = motion(rest);
     }
-    depth = std::max(depth, ball.dent_of(c) + dot(c.axis, weighted(contacts_->points_.carriers(c), position) - rest));
+    depth = std::max(depth, ball.dent_of(c) + dot(c.axis, weighted(carriers, position) - rest));
   }
   return depth;
 }

@@ -14,6 +14,7 @@
 #include "core/contact/explicit_solve.h"
 #include "core/contact/held_tool.h"
 #include "core/contact/obstacle_contact.h"
+#include "core/contact/own_motion.h"
 #include "core/contact/pin.h"
 #include "core/contact/point_contact.h"
 #include "core/elements/axial.h"
@@ -99,9 +100,9 @@ class Contacts {
   CutFaceContact cut_faces_;
   PointContacts points_;
   ExplicitSolve explicit_solve_;
-  std::vector<std::uint8_t> is_free_;  ///< nothing holds the organ (organ_count)
-  bool is_locked_ = false;             ///< a set exists
-  bool is_linearised_ = false;         ///< the set is in a linear system
+  OwnMotion own_motion_;
+  bool is_locked_ = false;      ///< a set exists
+  bool is_linearised_ = false;  ///< the set is in a linear system
 };
 
 /// The contacts of one step, until it is destroyed. Move-only.
@@ -114,8 +115,8 @@ class ContactSet {
   std::int32_t touched(std::size_t hand) const;
 
   /// Largest displacement from rest [m], at `position`, of a point that the ball in a hand touches, along its contact;
-  /// for a pin, that of its sphere. 0 without contact and for a blade. Where nothing holds an organ, its motion as a
-  /// whole does not count.
+  /// for a pin, that of its sphere. 0 without contact and for a blade. Where nothing holds a piece of tissue, its
+  /// motion as a whole does not count.
   double depth(std::size_t hand, const Vec3Array& position) const;
 
   /// Notes what is touched, with the spheres at `position` [m] and the hands' tools at `centre` [m] at the end of the

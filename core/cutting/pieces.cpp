@@ -22,14 +22,13 @@ bool Pieces::join(std::int32_t p, std::int32_t q) {
   return a != b;
 }
 
-std::int32_t Pieces::find(const State& state) {
+std::int32_t Pieces::find(const std::vector<std::uint8_t>& axial_severed) {
   auto count = std::int32_t(model_.sphere_count());
   piece_.resize(model_.sphere_count());
   for (std::int32_t i = 0; i < count; ++i) piece_[std::size_t(i)] = i;
   const AxialElements& axial = model_.axial;
-  const std::vector<std::uint8_t>& severed = state.axial_severed;
   for (std::size_t i = 0; i < axial.size(); ++i)
-    if ((severed.empty() || !severed[i]) && join(axial.a[i], axial.b[i])) --count;
+    if ((axial_severed.empty() || !axial_severed[i]) && join(axial.a[i], axial.b[i])) --count;
   for (std::size_t i = 0; i < piece_.size(); ++i) piece_[i] = root(std::int32_t(i));
   return count;
 }

@@ -18,8 +18,9 @@ class Pieces {
   /// Reserves capacity for every sphere, so that find() never allocates.
   void reserve() { piece_.reserve(model_.sphere_count()); }
 
-  /// Finds the pieces of `state` and returns their number.
-  std::int32_t find(const State& state);
+  /// Finds the pieces and returns their number. `axial_severed`: as in State; empty: nothing is severed.
+  std::int32_t find(const std::vector<std::uint8_t>& axial_severed);
+  std::int32_t find(const State& state) { return find(state.axial_severed); }
 
   /// Joins what the elements of `crossings` held together, and returns by how much that reduces the number of pieces.
   /// After find(), this is the number of pieces that came loose when those elements were severed.

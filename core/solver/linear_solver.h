@@ -29,7 +29,6 @@ struct SolverLimits {
 struct SolverOutcome {
   std::int32_t iterations = 0;
   double residual = 0;  ///< relative to that of the first guess
-  double enough = 0;    ///< residual that counted as solved
   bool converged = false;
 };
 
@@ -115,7 +114,6 @@ SolverOutcome LinearSolver::solve(const elements::Coordinates& b, elements::Coor
       },
       gradient_);
   outcome.iterations = limits.max_iterations - left;
-  outcome.enough = std::sqrt(enough);
   return outcome;
 }
 

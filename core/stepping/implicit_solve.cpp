@@ -102,20 +102,17 @@ void ImplicitSolve::solve_contacts(const Beginning& beginning, contact::Implicit
                                    StepReport& report) {
   const parallel::Slabs& slabs = context_.elements.slabs();
   const contact::ContactStep& step = contacts.step();
-  solver::SolverLimits limits = limits_;
   for (int round = 0;; ++round) {
     contact::LinearisedContacts linearised = contacts.linearise(force_, blocks_);
     context_.team.for_each(slabs.count(), [&](int slab) { find_momentum(beginning, step.h, slab); });
     solver_.set_blocks(blocks_, std::array{step.pins[0].sphere, step.pins[1].sphere});
     const solver::SolverOutcome outcome =
-        solver_.solve(momentum_, change, round == 0 ? beginning.prediction_energy : std::nullopt, limits,
+        solver_.solve(momentum_, change, round == 0 ? beginning.prediction_energy : std::nullopt, limits_,
                       [&](const auto* in, auto* out, auto&& after) {
                         context_.elements.apply(in, out, after);
                         const double of_cells = resistance.apply(in, out);
                         return of_cells + linearised.apply(in, out);
                       });
-    // What is left to do after a contact was dropped need not be solved better than the whole.
-    limits.absolute = std::max(limits.absolute, outcome.enough);
     report.iterations += outcome.iterations;
     report.residual = outcome.residual;
     if (!outcome.converged) report.status = StepStatus::not_converged;

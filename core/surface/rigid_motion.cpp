@@ -91,19 +91,19 @@ Turn turn_of(const Matrix& moment) {
   return turn;
 }
 
-RigidMotion rigid_motion(const Model& model, const OrganRange& organ, const Vec3Array& position) {
+RigidMotion rigid_motion(const Model& model, std::span<const std::int32_t> spheres, const Vec3Array& position) {
   RigidMotion motion;
   double mass = 0;
-  const auto first = std::size_t(organ.first), last = first + std::size_t(organ.count);
-  for (std::size_t i = first; i < last; ++i) {
+  for (const std::int32_t sphere : spheres) {
+    const auto i = std::size_t(sphere);
     mass += model.mass[i];
     motion.from += model.mass[i] * model.rest_position[i], motion.to += model.mass[i] * position[i];
   }
   motion.from = motion.from / mass, motion.to = motion.to / mass;
   Matrix moment{};
-  for (std::size_t i = first; i < last; ++i) {
-    const Vec3 now = model.mass[i] * (position[i] - motion.to), rest = model.rest_position[i] - motion.from;
-    add_moment(moment, now, rest);
+  for (const std::int32_t sphere : spheres) {
+    const auto i = std::size_t(sphere);
+    add_moment(moment, model.mass[i] * (position[i] - motion.to), model.rest_position[i] - motion.from);
   }
   motion.turn.entry = nearest_rotation(moment);
   return motion;

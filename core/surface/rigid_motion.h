@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <span>
 
 #include "core/model/model.h"
 #include "core/model/vec3.h"
@@ -14,12 +16,12 @@ struct Turn {
   Vec3 operator()(Vec3 v) const;
 };
 
-/// How an organ has moved from rest as a whole: turned about its centre of mass, and moved with it.
+/// How tissue has moved from rest as a whole: turned about its centre of mass, and moved with it.
 struct RigidMotion {
   Turn turn;
   Vec3 from, to;  ///< centre of mass at rest and now [m]
 
-  /// Where a point of the organ at rest would be [m].
+  /// Where a point at rest would be [m].
   Vec3 operator()(Vec3 rest) const;
 };
 
@@ -29,10 +31,10 @@ void add_moment(std::array<double, 9>& moment, Vec3 now, Vec3 rest);
 /// The rotation nearest to a moment, which may be of lower rank.
 Turn turn_of(const std::array<double, 9>& moment);
 
-/// The rigid motion that is nearest to that of the organ's spheres, by least squares weighted with their masses: the
+/// The rigid motion that is nearest to that of some spheres, by least squares weighted with their masses: the
 /// orthogonal part of a polar decomposition, by Newton's method (Higham, "Computing the polar decomposition - with
 /// applications", SIAM J. Sci. Stat. Comput. 7, 1986). Without a turn where the spheres do not span space.
-RigidMotion rigid_motion(const Model& model, const OrganRange& organ, const Vec3Array& position);
+RigidMotion rigid_motion(const Model& model, std::span<const std::int32_t> spheres, const Vec3Array& position);
 
 /// How a frame has turned: the rotation nearest to how its spheres' arms have moved, by least squares. In a plane its
 /// normal turns with it, on a line the turn is the smallest, and one sphere does not turn. (Müller, Heidelberger,

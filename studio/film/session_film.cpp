@@ -170,7 +170,7 @@ void SessionFilm::keep_inputs(const Inputs& inputs) {
 }
 
 std::string SessionFilm::verdict() const {
-  if (is_same() && overlay_.inside_out > 0) return "replay same as recorded, but TISSUE IS INSIDE OUT";
+  if (is_same() && overlay_.inside_out > 0) return "TISSUE IS INSIDE OUT; replay same as recorded";
   return is_same() ? "replay same as recorded"
                    : "REPLAY DIFFERS from the recording since " +
                          output::fixed(double(first_different_) * model().tick, 3) + " s";

@@ -467,7 +467,8 @@ void Overlay::draw(Frame& frame, const OverlayData& data) {
        {&plan.names, &plan.facts, &plan.plot, &plan.verdict, &plan.legend, &plan.warning, &plan.caption}) {
     const PixelBox& box = *panel;
     const cv::Rect place = cv::Rect(box.x, box.y, box.width, box.height) & cv::Rect(0, 0, rgb.cols, rgb.rows);
-    const bool must_stay = &box == &plan.verdict && data.verdict_tone == VerdictTone::bad;
+    const bool must_stay = (&box == &plan.verdict && data.verdict_tone == VerdictTone::bad) ||
+                           (&box == &plan.caption && data.level == OverlayLevel::caption);
     const double shown = must_stay ? 1 : share_shown(box, data.tools, parts_->px(40));
     if (shown < 1 && place.area() > 0) faded.push_back({place, rgb(place).clone(), shown});
   }

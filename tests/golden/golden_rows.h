@@ -253,6 +253,34 @@ inline constexpr GoldenRow kGoldenRevision18[] = {
     {"crumbs, auto", {0xfc79f730a0b68a42, 0xa173afeacad1bb38, 0x11c8e4685a0603e1, 0xf59e732ac9072487}},
 };
 
+inline constexpr GoldenRow kGoldenRevision19[] = {
+    {"full, sdirk2", {0x6ea36172c291d416, 0x28c7a22f71fa0d6e, 0x6c15fe1e9c02670d, 0xfe51023178cdb6c7}},
+    {"wedge, sdirk2", {0x6ea36172c291d416, 0x28c7a22f71fa0d6e, 0xe18bcdb8edf6db92, 0x27ee5c172b680e7b}},
+    {"crumbs, sdirk2", {0x145bf676d9ef7105, 0xa3adb7363227e7b0, 0x52fa7f9858cc037a, 0x8fac456bc4675a75}},
+    {"skinned, auto", {0xf3bffb4aa45235bf, 0x25a1b6eb1475d9c9, 0xe5a7299fc71a7f5c, 0xb66de7471d493ca1}},
+    {"skinned, sdirk2", {0xb9afbe8c4d1d969f, 0xf8a40e4e53f79665, 0xa56f73ff2ab4aef5, 0xe67a512010328272}},
+    {"soft and skinned, auto", {0x2167393320c256c0, 0x973dd11779446504, 0xc249817082a8a727, 0x16c22e699f655a13}},
+    {"touched cut, auto", {0xff890838b753aeda, 0xc2964c266f6d3dfa, 0x1c04606c5c38b838, 0xd9bb3ac7c7116629}},
+    {"touched cut, sdirk2", {0xfff94fb4d8b04cb2, 0x9c3ab6f566ffcb22, 0xea0f67111354a57c, 0x9b690c1a18af2bf5}},
+    {"soft and touched cut, auto", {0xd5f884a9e30aa820, 0xa8ca57b2b3f9310e, 0x654555a6f5270cb1, 0x24ec8e770d0a0134}},
+    {"touched slice, auto", {0xc651e673aaed1229, 0xf5a083e760a53fea, 0x9275339255a1e1b3, 0x5a104496c65a8784}},
+    {"touched slice, sdirk2", {0x7f2b67ca4ea3f792, 0xfa0514df994c3eb0, 0x843d60ce3c8c6d87, 0x86636c1211451d91}},
+    {"soft and touched slice, auto", {0x0aebf3b27fba0d04, 0x48f5ebb3b9b1b20b, 0x83d59a6edd6063b3, 0xd9802505b787f981}},
+    {"touched tear, auto", {0xc651e673aaed1229, 0x2daa381a3a772e97, 0xbe7502bc1bb26592, 0xe160cacbc3b231b8}},
+    {"touched tear, sdirk2", {0x7f2b67ca4ea3f792, 0xd38c18f8b4227a0c, 0xd037f8a86ee90194, 0x0e8897caf112b507}},
+    {"touched bridge, auto", {0xc651e673aaed1229, 0xe9e40072544d0154, 0xc80fbf694c561f34, 0xbbd003389a0b91a4}},
+    {"touched bridge, sdirk2", {0x7f2b67ca4ea3f792, 0x0b74c9e55486259b, 0xf4162d93724331c1, 0xa930c695355b0820}},
+    {"touched plane, auto", {0x05c70d5366a0e86f, 0x8387584449065cec, 0xdb05af94c6e3a545, 0x88735788c1380397}},
+    {"touched plane, sdirk2", {0x943a47562b9eb657, 0xe532eaa507a2ec22, 0x848d0075bf83c5af, 0x6d31321e1cbf47cc}},
+    {"touched edge, auto", {0x61cbf0e6f2fb833a, 0xc360c6b0e0a5d91e, 0xfff38ec03a529734, 0xaf33a6c4529681de}},
+    {"touched edge, sdirk2", {0x4e25e343a3f4899d, 0xfb43f3c94afbfcf2, 0x650568df146b82b5, 0xb7e4ad4851092af9}},
+    {"fine mesh, auto", {0x00c4c498b1ca5a4c, 0x35bd65f3863eb426, 0xe4ec4d231240d073, 0x428d034685f903e5}},
+    {"fine mesh, sdirk2", {0xfbc106aac38946d1, 0x5e23372e127a8dae, 0x416142254c0f4879, 0xbed2098026f775ab}},
+    {"full, auto", {0xb6c71a93224b3c05, 0x532dc5c79cc197c6, 0xcfd5eacf13d457bc, 0x16e9c74cf6074000}},
+    {"wedge, auto", {0xb6c71a93224b3c05, 0x532dc5c79cc197c6, 0xae26d3f4f2e1c428, 0x06bc8fb3d94197b9}},
+    {"crumbs, auto", {0x03283a5938717dbc, 0xc765e32a43836add, 0x2ccc8f73db031fc8, 0xfa42f56e05aa4a3a}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},   {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189},   {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
@@ -263,6 +291,7 @@ inline constexpr GoldenRevision kGoldenRevisions[] = {
     {13, kGoldenRevision13, 0xa5637b24229bb1f2}, {14, kGoldenRevision14, 0x463cb460f23844de},
     {15, kGoldenRevision15, 0xc7644e74b0d461e5}, {16, kGoldenRevision16, 0x304838863b606220},
     {17, kGoldenRevision17, 0x47d495b0831911b},  {18, kGoldenRevision18, 0x519dbe9952522cb},
+    {19, kGoldenRevision19, 0xbcff56bc1d9b0f37},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

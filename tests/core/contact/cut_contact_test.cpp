@@ -146,12 +146,12 @@ TEST(CutContact, ABallPushesALoosePieceByItsCutFace) {
     if (!is_right(i)) state.position.add(i, {-0.1, 0, 0});
   stepping::Stepper stepper(model);
   Vec3 impulse;
-  double work = 0;
+  double work = 0, deepest = 0;
   for (int i = 0; i < 400; ++i) {
     const stepping::StepReport report = stepper.step(state, at({-0.012 + 1e-4 * i, 0.001, 0.017}));
     ASSERT_EQ(report.status, stepping::StepStatus::ok);
     impulse -= model.tick * report.tool_force;
-    work += norm(report.tool_force);
+    work += norm(report.tool_force), deepest = std::max(deepest, report.depth);
   }
   Vec3 right, left;
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
@@ -162,6 +162,7 @@ TEST(CutContact, ABallPushesALoosePieceByItsCutFace) {
   std::printf("momentum %.3e kg m/s, off by %.1e of it; %.1f mm/s\n", norm(right), norm(right - impulse) / norm(right),
               1e3 * right.x / mass);
   EXPECT_GT(work, 0);
+  EXPECT_LT(deepest, 0.002) << "how far it was pushed is not how deep it was pressed";
   EXPECT_GT(right.x / mass, 0.05) << "the ball's 100 mm/s, nearly";
   EXPECT_LT(norm(right - impulse), 1e-8 * norm(right));
   EXPECT_LT(norm(left), 1e-12 * norm(right)) << "what it does not touch stays";

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "core/contact/drawn_surfaces.h"
 #include "core/stepping/step.h"
@@ -320,7 +321,9 @@ TEST(RigidMotion, IsFoundUnderDeformation) {
     p = {1.1 * p.x, 0.8 * p.y, p.z};  // a stretch along the axes does not turn
     state.position.set(i, to + rotate(turn, p));
   }
-  const surface::RigidMotion motion = surface::rigid_motion(model, model.organs[0], state.position);
+  std::vector<std::int32_t> spheres(model.sphere_count());
+  std::iota(spheres.begin(), spheres.end(), 0);
+  const surface::RigidMotion motion = surface::rigid_motion(model, spheres, state.position);
   for (const Vec3 p : {Vec3{0.01, 0, 0}, Vec3{0, 0.02, 0}, Vec3{0.01, -0.01, 0.03}})
     EXPECT_NEAR(norm(motion(from + p) - (to + rotate(turn, p))), 0, 1e-14);
 }

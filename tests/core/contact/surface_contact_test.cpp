@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -162,6 +163,39 @@ TEST_P(SurfaceContact, HoldsForTenSecondsWhatItGrips) {
   }
   EXPECT_LT(early, -0.005) << "the tissue pulls the ball back";
   EXPECT_NEAR(late / early, 1, 0.02) << "and does not let go";
+}
+
+// Where skin is folded, its lower side faces downwards. A ball that was pressed on it and is lifted off is behind that.
+TEST_P(SurfaceContact, IsGoneOnceTheBallHasLeftAFold) {
+  const double radius = 0.01;
+  Model model = pressed_block(GetParam(), radius);
+  const double edge = *std::max_element(model.rest_position.x.begin(), model.rest_position.x.end());
+  State folded = rest_state(model);
+  model.held_axes.assign(model.sphere_count(), 3);  // so that it stays folded, and gives way up and down
+  for (std::size_t i = 0; i < model.sphere_count(); ++i)
+    if (model.rest_position.x[i] > edge - 1e-6 && model.rest_position.z[i] > kTop - 1e-6)
+      folded.position.add(i, {-0.022, 0, 0.006});
+  const auto highest = [](const State& state) {
+    return *std::max_element(state.position.z.begin(), state.position.z.end());
+  };
+  const double start = highest(folded) + radius, deepest = start - 0.008;
+  int clear_of_it = 0;
+  for (const double speed : {0.04, 0.4, 4.0})
+    for (const double x : {0.0, 0.004, 0.008}) {
+      stepping::Stepper stepper(model);
+      State state = folded;
+      int most = 0;
+      for (int i = 0; i <= 100; ++i)
+        most = std::max(most, stepper.step(state, at({x, 0.002, start + (deepest - start) * i / 100})).contacts);
+      EXPECT_GT(most, 3) << x;
+      for (double z = deepest; z < start + 0.06; z += speed * model.tick) {
+        const stepping::StepReport report = stepper.step(state, at({x, 0.002, z}));
+        if (z - radius < highest(state) + model.organs[0].spacing) continue;
+        ++clear_of_it;
+        ASSERT_EQ(report.contacts, 0) << "at x = " << x << ", " << speed << " m/s, " << z << " m high";
+      }
+    }
+  EXPECT_GT(clear_of_it, 1000);
 }
 
 INSTANTIATE_TEST_SUITE_P(Under, SurfaceContact,

@@ -329,6 +329,22 @@ TEST(Overlay, AToolShowsThroughThePanelBeforeIt) {
   EXPECT_EQ(change(kVerdictX, kVerdictY), verdict) << "a bad verdict is on every frame";
 }
 
+TEST(Overlay, ACaptionOfAStillStaysBeforeATool) {
+  render::OverlayData data = full_data();
+  data.caption = "3.10 s", data.level = render::OverlayLevel::caption;
+  render::Overlay overlay(320, 240, 1.4);
+  const auto texts = overlay.layout(data);
+  ASSERT_EQ(texts.size(), 1u);
+  const auto drawn = [&] {
+    render::Frame frame = render::blank_frame(320, 240, 200, 120, 90);
+    overlay.draw(frame, data);
+    return frame.rgb;
+  };
+  const auto alone = drawn();
+  data.tools = {{texts[0].box.x + 10, texts[0].box.y + 5, 0.5}};
+  EXPECT_EQ(drawn(), alone);
+}
+
 TEST(Overlay, SameDataGivesSamePixels) {
   render::Overlay one(640, 360), other(640, 360);
   render::Frame a = render::blank_frame(640, 360, 9, 9, 9), b = a, plain = a;
