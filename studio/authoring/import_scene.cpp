@@ -18,6 +18,7 @@
 #include "studio/authoring/capsule.h"
 #include "studio/authoring/filling_choice.h"
 #include "studio/authoring/fit_stiffness.h"
+#include "studio/authoring/named_file.h"
 #include "studio/authoring/new_folder.h"
 #include "studio/authoring/scene_parts.h"
 #include "studio/authoring/script_choice.h"
@@ -121,11 +122,8 @@ class Import {
   /// Reads, repairs and fills the file, once it has been repaired only the last, and makes a draft of each organ.
   /// `spheres`: in all; unset: as asked for.
   Errors fill(std::optional<std::int64_t> spheres) {
-    const Result<Tissue> whole = choose_tissue(place_, request_.organ, {fs::path(request_.mesh).stem().string()});
-    if (!whole) return whole.errors();
     importers::ImportOptions options;
     options.unit_in_metres = request_.unit_in_metres, options.size = request_.size, options.scale = request_.scale;
-    options.usual_size = whole->usual_size();
     options.all_parts = request_.parts == Parts::all_in_one;
     options.gap = request_.gap.value_or(-1);
     options.largest_hole = request_.largest_hole;
@@ -134,20 +132,20 @@ class Import {
     if (request_.progress)
       options.progress = [&](const std::string& stage, double share) { request_.progress(stage, 0.5 * share); };
     if (!file_) {
-      Result<importers::RepairedFile> repaired = repair(options);
+      Result<NamedFile> repaired = repair_named(request_, place_, options);
       if (!repaired) return with_option_names(repaired.errors());
       file_ = *std::move(repaired);
     }
     std::optional<importers::RepairedFile> turned;
-    if (request_.turn != Vec3{}) turned = importers::turned(*file_, request_.turn);
-    const importers::RepairedFile& lying = turned ? *turned : *file_;
+    if (request_.turn != Vec3{}) turned = importers::turned(file_->file, request_.turn);
+    const importers::RepairedFile& lying = turned ? *turned : file_->file;
     FillingWish wish{request_.sphere_radius, spheres ? spheres : request_.spheres};
     constexpr int kMostTries = 3;
     for (int tries = 0;; ++tries) {
       Result<std::vector<importers::ImportedOrgan>> filled =
-          fill_all(lying, options, wish, whole->preset->sphere_radius);
+          fill_all(lying, options, wish, file_->tissue.preset->sphere_radius);
       if (!filled) return filled.errors();
-      if (Errors errors = make_drafts(*file_, *whole, *std::move(filled)); !errors.empty()) return errors;
+      if (Errors errors = make_drafts(file_->file, file_->tissue, *std::move(filled)); !errors.empty()) return errors;
       if (Errors errors = check_extent(); !errors.empty()) return errors;
       const std::optional<std::int64_t> better = spheres ? std::nullopt : better_count();
       if (!better || tries == kMostTries) return {};
@@ -162,24 +160,6 @@ class Import {
     const std::string problem = cutting::extent_problem(organs);
     if (problem.empty()) return {};
     return {{request_.mesh, problem, "give a size with " + output::option_name("import.size")}};
-  }
-
-  /// The repaired meshes of all names that are asked for.
-  Result<importers::RepairedFile> repair(importers::ImportOptions options) const {
-    const std::size_t most = request_.parts == Parts::each ? kMostOrgans : 1;
-    std::optional<importers::RepairedFile> all;
-    for (const std::string& name : request_.names.empty() ? std::vector<std::string>{""} : request_.names) {
-      options.part = name;
-      Result<importers::RepairedFile> one = importers::repair_file(request_.mesh, options, most);
-      if (!one) return one.errors();
-      if (!all)
-        all = *std::move(one);
-      else
-        std::move(one->mesh.begin(), one->mesh.end(), std::back_inserter(all->mesh));
-      // One unit for all of them, as the file has one.
-      options.unit_in_metres = all->report.unit.in_metres, options.size.reset(), options.scale = 1;
-    }
-    return *std::move(all);
   }
 
   /// The number of spheres that holds the wanted rate, if the drafts are too many or, where a rate was asked for, too
@@ -456,7 +436,7 @@ class Import {
       return is_new.errors();
     outcome.tick_time = time_of_tick(true).value_or(0), outcome.dearest_time = dearest_work();
     for (Draft& draft : drafts_) {
-      const importers::CheckedMesh& mesh = file_->mesh[std::size_t(&draft - drafts_.data())];
+      const importers::CheckedMesh& mesh = file_->file.mesh[std::size_t(&draft - drafts_.data())];
       if (const Result<Done> written = importers::write_obj(draft.part.mesh_file, mesh.vertex, mesh.triangle); !written)
         return written.errors();
       outcome.organs.push_back(std::move(draft.part));
@@ -489,7 +469,7 @@ class Import {
   NewFolder folder_;
   loading::LoadedScene present_;  ///< to which organs are added; empty: a new scene
   scenes::SceneSpec scene_;
-  std::optional<importers::RepairedFile> file_;
+  std::optional<NamedFile> file_;
   std::vector<Draft> drafts_;
 };
 
