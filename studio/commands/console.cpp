@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "studio/commands/flags.h"
+#include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
 #include "studio/output/printable.h"
 
@@ -52,17 +53,18 @@ ProgressLine::~ProgressLine() {
 
 void ProgressLine::show(std::int64_t done, std::int64_t total) {
   const Clock::time_point now = Clock::now();
-  if (!is_terminal_ || now - last_ < std::chrono::milliseconds(200)) return;
+  // Off a terminal, in a log, nobody waits for the next line; but silence for minutes looks like a hang.
+  if (now - last_ < (is_terminal_ ? std::chrono::milliseconds(200) : std::chrono::minutes(1))) return;
   last_ = now;
   const double spent = std::chrono::duration<double>(now - start_).count();
-  if (done <= 0)
-    std::fprintf(stderr, "\r\033[K%s", what_.c_str());
-  else if (total > 0)
-    std::fprintf(stderr, "\r\033[K%s: %3.0f %%, %.0f s left", what_.c_str(), 100.0 * double(done) / double(total),
-                 spent * double(total - done) / double(done));
-  else
-    std::fprintf(stderr, "\r\033[K%s: %.0f s", what_.c_str(), spent);
-  if (!added_.empty()) std::fprintf(stderr, ", %s", added_.c_str());
+  std::string text = what_;
+  if (done > 0 && total > 0)
+    text += ": " + output::fixed(100.0 * double(done) / double(total), 0) + " %, " +
+            output::fixed(spent * double(total - done) / double(done), 0) + " s left";
+  else if (done > 0)
+    text += ": " + output::fixed(spent, 0) + " s";
+  if (!added_.empty()) text += ", " + added_;
+  std::fprintf(stderr, is_terminal_ ? "\r\033[K%s" : "%s\n", text.c_str());
 }
 
 }  // namespace ctpm::commands

@@ -29,8 +29,8 @@ void print_warnings(const Errors& warnings);
 /// Prints a line to stderr, for progress and remarks; results go to stdout.
 void print_remark(const std::string& text);
 
-/// A progress line on stderr with the remaining time, or the count so far if the total is unknown; silent if stderr is
-/// not a terminal.
+/// A progress line on stderr with the remaining time, or the count so far if the total is unknown; where stderr is
+/// not a terminal, a line a minute.
 class ProgressLine {
  public:
   explicit ProgressLine(std::string what);

@@ -87,6 +87,8 @@ Errors errors_beside_scene(RecordArguments& arguments, const Result<scenes::Scen
                 : text.errors());
   }
   if (!source.motion.empty()) append(errors, output::check_readable(source.motion));
+  if (devices::asks_for_device(source.second) && scene && scene->problems.is_empty())
+    append(errors, devices::check_second_hand(scene->scene.spec.hands.value_or(1)));
   if (!arguments.parent.empty()) append(errors, recordings::SessionReader::open(arguments.parent));
   return errors;
 }

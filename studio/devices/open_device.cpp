@@ -211,13 +211,15 @@ DeviceRequest as_second_hand(DeviceRequest request, const DeviceRequest& first) 
   return request;
 }
 
+Errors check_second_hand(std::int32_t hands) {
+  if (hands >= 2) return {};
+  return {{output::option_name("second.address"), "the scene has one hand", "write \"hands\": 2 in the scene"}};
+}
+
 Result<FollowedPair> follow_devices(const DeviceRequest& first, std::unique_ptr<Device> first_device,
                                     const DeviceRequest& second, std::unique_ptr<Device> second_device,
                                     const Model& model) {
-  Errors errors;
-  if (model.hands < 2)
-    errors.push_back(
-        {output::option_name("second.address"), "the scene has one hand", "write \"hands\": 2 in the scene"});
+  Errors errors = check_second_hand(model.hands);
   Result<FollowedDevice> a = follow_device(first, std::move(first_device), model);
   Result<FollowedDevice> b = follow_device(second, std::move(second_device), model);
   for (const auto* followed : {&a, &b}) append(errors, *followed);

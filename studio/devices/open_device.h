@@ -34,6 +34,9 @@ struct DeviceRequest {
 /// listen and who may connect, scale, speed, timeout, force and stiffness.
 DeviceRequest as_second_hand(DeviceRequest request, const DeviceRequest& first);
 
+/// What is wrong with a device for the second hand of a scene whose hands are so many; nothing if there are two.
+Errors check_second_hand(std::int32_t hands);
+
 /// True if an address or a port is given.
 bool asks_for_device(const DeviceRequest& request);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "recordings/replay.h"
 #include "recordings/session_reader.h"
@@ -126,6 +127,8 @@ Result<std::string> verify_session(Parameters& parameters, const CallContext& co
   if (!reader) return reader.errors();
   recordings::VerifyOptions options;
   options.progress = context.progress, options.should_stop = context.should_stop;
+  // Somebody waits for it, and the session that they recorded is over.
+  options.threads = std::max(1, int(std::thread::hardware_concurrency()));
   const Result<session::WholeVerdict> verdict = session::verify_whole(*reader, options);
   if (!verdict) return verdict.errors();
   // With the stamp from before: what was written to meanwhile may not be what was read.

@@ -192,6 +192,8 @@ TEST_F(IgtlRecord, APortInUseAndANobodyAreToldAtOnceAndNothingIsWritten) {
       "cannot listen here");
   refused({"record", scene, "-o", "b.ctpm", "--igtl-listen", "0", "--igtl-bind", "0.0.0.0"},
           "--igtl-allow: error: name the addresses that may connect");
+  refused({"record", scene, "-o", "b.ctpm", "--igtl-listen", "0", "--igtl-second-listen", "0"},
+          "--igtl-second: error: the scene has one hand");
 }
 
 TEST_F(IgtlRecord, WhileAnotherDeviceThanTheNamedOneSendsItsNameIsSaid) {

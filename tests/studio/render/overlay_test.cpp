@@ -341,7 +341,7 @@ TEST(Overlay, ACaptionOfAStillStaysBeforeATool) {
     return frame.rgb;
   };
   const auto alone = drawn();
-  data.tools = {{texts[0].box.x + 10, texts[0].box.y + 5, 0.5}};
+  data.tools = {{texts[0].box.x + 10.0, texts[0].box.y + 5.0, 0.5}};
   EXPECT_EQ(drawn(), alone);
 }
 
