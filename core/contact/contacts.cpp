@@ -45,8 +45,9 @@ Contacts::Contacts(const Model& model, const elements::Kernels& kernels, StageWa
       cut_faces_(model),
       points_(model, pressed_capacity().first + of_cuts(model, blade_, wedge_, cut_faces_).first,
               pressed_capacity().second + of_cuts(model, blade_, wedge_, cut_faces_).second),
-      explicit_solve_(model, points_),
-      own_motion_(model) {}
+      explicit_solve_(model, points_) {
+  if (model.has_tool(ToolKind::ball)) own_motion_.emplace(model);
+}
 
 Pins Contacts::pins(const HeldTools& tools, const Vec3Array& position, double share, double h) {
   Pins pins;
@@ -68,7 +69,7 @@ void Contacts::find(const StateView& state, const HeldTools& tools, const Contac
     if (!tool.is(ToolKind::ball)) return;
     const Vec3 velocity = (tool.to - tool.from) / model_.tick;
     ball_.find(state, {tool.at(step.share), velocity, tool.tool->radius, press, hand}, points_);
-    if (points_.tool_count(hand) > 0) own_motion_.follow(state.axial_severed);
+    if (points_.tool_count(hand) > 0) own_motion_->follow(state.axial_severed);
   };
   // In ascending order of points.
   find_ball(0);
@@ -122,8 +123,8 @@ double ContactSet::depth(std::size_t hand, const Vec3Array& position) const {
     if (c.point < 0 || !c.is_of_hand(hand)) continue;
     Vec3 rest = ball.rest_of(c);
     const Carriers carriers = contacts_->points_.carriers(c);
-    if (const std::int32_t piece = contacts_->own_motion_.free_piece(carriers.sphere.front()); piece >= 0) {
-      if (piece != moved) motion = contacts_->own_motion_.of(piece, position);
+    if (const std::int32_t piece = contacts_->own_motion_->free_piece(carriers.sphere.front()); piece >= 0) {
+      if (piece != moved) motion = contacts_->own_motion_->of(piece, position);
       moved = piece, rest = motion(rest);
     }
     depth = std::max(depth, ball.dent_of(c) + dot(c.axis, weighted(carriers, position) - rest));

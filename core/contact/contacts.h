@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/contact/ball_contact.h"
@@ -100,9 +101,9 @@ class Contacts {
   CutFaceContact cut_faces_;
   PointContacts points_;
   ExplicitSolve explicit_solve_;
-  OwnMotion own_motion_;
-  bool is_locked_ = false;      ///< a set exists
-  bool is_linearised_ = false;  ///< the set is in a linear system
+  std::optional<OwnMotion> own_motion_;  ///< empty without a ball
+  bool is_locked_ = false;               ///< a set exists
+  bool is_linearised_ = false;           ///< the set is in a linear system
 };
 
 /// The contacts of one step, until it is destroyed. Move-only.
