@@ -224,8 +224,8 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
   parts_ = &whole_;
 }
 
-/// A surface outside the ball touches only where the ball is in the organ, deeper than the lattice follows. One that
-/// has left it may be behind a fold or an overhanging wall for as long as it likes.
+/// A surface outside the ball touches only while the ball is in the organ, deeper than the lattice follows. A ball that
+/// has left the organ may stay behind a fold or an overhanging wall: that is no contact.
 void BallContact::dent_beyond(const BallMotion& ball, double reach) {
   std::int32_t organ = -1;
   bool is_in = false;
@@ -291,8 +291,8 @@ double BallContact::share_of(const Part& part, std::int32_t slot, double radius)
   return std::min(1.0, opening / (kOpen * radius));
 }
 
-/// Adds those parts of a triangle to its corners that are in the ball, or those that are `beyond` it and were touched,
-/// and returns whether there are others of these two kinds. `reach`: of the ball where it touched before [m].
+/// Adds to a triangle's corners its parts in the ball or, with `beyond`, those outside the ball that were touched.
+/// Returns whether it has parts of the other kind. `reach`: of the ball where it touched before [m].
 bool BallContact::dent(const Part& part, const surface::NearSurface::Triangle& triangle, const BallMotion& ball,
                        double reach, bool beyond) {
   const Vec3 corners[3] = {part.surface->place(triangle.corner[0]), part.surface->place(triangle.corner[1]),
