@@ -164,7 +164,7 @@ Script organ_script(const SceneSpec& scene, std::span<const FilledOrgan> organs,
   // Deep enough to be seen, never through the organ, and no deeper than a hand would cut at once: the force on a blade
   // is the toughness times its length in the tissue, 4 N in liver at 25 mm.
   const Vec3 size = top.size();
-  const double depth = std::min(0.010, 0.2 * size.z), cut_depth = std::min(0.025, 0.45 * size.z);
+  const double depth = std::min(0.010, 0.2 * size.z), cut_depth = at.depth_share * std::min(0.025, 0.45 * size.z);
   const double cut_length = std::min(0.6 * size.y, 0.080);
   // A little in front of the ridge, where a viewer before the organ can see it, unless the organ is too thin there.
   const auto seen = [&](double share, double forward) {

@@ -115,6 +115,7 @@ Script default_script(const SceneSpec& scene, std::span<const FilledOrgan> organ
 struct ScriptPlace {
   double along = 0;           ///< moves its places by this share of the organ's length
   bool cuts_through = false;  ///< the blade is drawn through the whole organ, from back to front
+  double depth_share = 1;     ///< of the usual depth of a cut that does not go through
 };
 
 /// The steps of default_script() for organ `index`.

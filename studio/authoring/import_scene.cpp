@@ -408,6 +408,12 @@ class Import {
                  choice->most_force > 0 ? "the script touches the organ but does not cut it"
                                         : "the script does not touch the organ",
                  "none", "edit the script: its places are those of the scene");
+    if (choice->drags)
+      draft.note("blade_drags",
+                 choice->is_inside_out ? "the script's blade turns soft tissue inside out before it cuts"
+                                       : "the script's blade takes the organ along by up to " +
+                                             importers::mm_text(choice->dragged) + " before it cuts",
+                 "the gentlest cut of the script's was taken", "hold more of the organ, or name the tissue that it is");
     return {};
   }
 

@@ -1,5 +1,7 @@
 #include "studio/authoring/script_choice.h"
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "core/surface/surface.h"
@@ -12,34 +14,84 @@ namespace {
 constexpr scenes::ScriptPlace kPlaces[] = {{},           {0.12},        {-0.12},      {0.24},
                                            {-0.24},      {0, true},     {0.3, true},  {-0.3, true},
                                            {0.15, true}, {-0.15, true}, {0.45, true}, {-0.38, true}};
+/// Of the usual depth, for an organ that a blade so deep takes along: its force is toughness times depth.
+constexpr double kShallower[] = {0.7, 0.5, 0.35};
+/// Of an organ's least extent, the mean way on which a blade may take its spheres along.
+constexpr double kMostDragged = 0.08;
+
+double least_extent(const std::vector<Vec3>& point) {
+  Vec3 least{INFINITY, INFINITY, INFINITY}, most = -1.0 * least;
+  for (const Vec3& p : point) {
+    least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
+    most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
+  }
+  return std::min({most.x - least.x, most.y - least.y, most.z - least.z});
+}
+
+bool is_gentler(const ScriptChoice& a, const ScriptChoice& b) {
+  return a.is_inside_out != b.is_inside_out ? b.is_inside_out : a.dragged < b.dragged;
+}
+
+/// Tries scripts on one organ where it has settled.
+class Trials {
+ public:
+  Trials(const scenes::SceneSpec& scene, const FilledOrgan& filled, const AnchorChoice& standing, bool is_timed,
+         const std::function<bool()>& should_stop)
+      : scene_(scene), standing_(standing), stepper_(standing.model), should_stop_(should_stop) {
+    if (!is_timed) until_cut_ = 0;
+    // The surface as it lies, without what binds it to the spheres.
+    settled_.sphere_radius = filled.sphere_radius, settled_.spacing = filled.spacing, settled_.centre = filled.centre;
+    surface::deform_surface(filled.surface, standing.standing.state.position, 0, settled_.surface.vertex);
+    most_dragged_ = kMostDragged * least_extent(settled_.surface.vertex);
+  }
+
+  /// None: stopped.
+  std::optional<ScriptChoice> at(scenes::ScriptPlace place) {
+    ScriptChoice choice;
+    choice.script = scenes::organ_script(scene_, std::span(&settled_, 1), 0, place);
+    const std::optional<loading::ScriptTrial> trial = loading::try_script(
+        standing_.model, stepper_, standing_.standing.state, choice.script, until_cut_, should_stop_);
+    if (!trial) return std::nullopt;
+    choice.is_refused = trial->is_refused;
+    choice.most_force = trial->most_force, choice.was_cut = trial->was_cut[0] && trial->severed > 0;
+    choice.is_inside_out = trial->is_inside_out, choice.dragged = trial->dragged;
+    choice.drags = !place.cuts_through && (trial->is_inside_out || trial->dragged > most_dragged_);
+    choice.usual_work = trial->usual_work, choice.dearest_work = trial->dearest_work;
+    return choice;
+  }
+
+ private:
+  const scenes::SceneSpec& scene_;
+  const AnchorChoice& standing_;
+  stepping::Stepper stepper_;
+  const std::function<bool()>& should_stop_;
+  std::optional<std::size_t> until_cut_;
+  FilledOrgan settled_;
+  double most_dragged_ = 0;  ///< [m]
+};
 
 }  // namespace
 
 std::optional<ScriptChoice> choose_script(const scenes::SceneSpec& scene, const FilledOrgan& filled,
                                           const AnchorChoice& standing, bool is_timed,
                                           const std::function<bool()>& should_stop) {
-  // An organ's surface as it lies, without what binds it to the spheres.
-  FilledOrgan settled;
-  settled.sphere_radius = filled.sphere_radius, settled.spacing = filled.spacing, settled.centre = filled.centre;
-  surface::deform_surface(filled.surface, standing.standing.state.position, 0, settled.surface.vertex);
-  ScriptChoice choice;
-  stepping::Stepper stepper(standing.model);
-  for (const scenes::ScriptPlace place : kPlaces) {
-    scenes::Script script = scenes::organ_script(scene, std::span(&settled, 1), 0, place);
-    const std::optional<loading::ScriptTrial> trial =
-        loading::try_script(standing.model, stepper, standing.standing.state, script,
-                            is_timed ? std::nullopt : std::optional<std::size_t>(0), should_stop);
-    if (!trial) return std::nullopt;
-    const bool is_better =
-        trial->most_force > 0 && !trial->is_refused && (trial->was_cut[0] || choice.script.steps.empty());
-    if (is_better || choice.script.steps.empty()) {
-      choice.most_force = trial->most_force, choice.was_cut = trial->was_cut[0] && trial->severed > 0;
-      choice.usual_work = trial->usual_work, choice.dearest_work = trial->dearest_work;
-      choice.script = std::move(script);
-    }
-    if (choice.most_force > 0 && choice.was_cut) break;
+  Trials trials(scene, filled, standing, is_timed, should_stop);
+  std::optional<ScriptChoice> best;
+  scenes::ScriptPlace place;
+  for (const scenes::ScriptPlace other : kPlaces) {
+    std::optional<ScriptChoice> choice = trials.at(other);
+    if (!choice) return std::nullopt;
+    if (!best || choice->works()) best = std::move(choice), place = other;
+    if (best->works()) break;
   }
-  return choice;
+  for (const double share : kShallower) {
+    if (!best->drags) break;
+    place.depth_share = share;
+    std::optional<ScriptChoice> choice = trials.at(place);
+    if (!choice) return std::nullopt;
+    if (choice->works() && is_gentler(*choice, *best)) best = std::move(choice);
+  }
+  return best;
 }
 
 }  // namespace ctpm::authoring

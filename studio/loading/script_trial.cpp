@@ -11,6 +11,8 @@ namespace {
 
 /// Ticks between two looks at `should_stop`.
 constexpr std::int64_t kStretch = 50;
+/// Ticks between two looks at where the spheres are.
+constexpr std::int64_t kLook = 20;
 
 /// Of this thread [s].
 double processor_time() {
@@ -22,7 +24,12 @@ double processor_time() {
 class Trial {
  public:
   Trial(const Model& model, stepping::Stepper& stepper, const State& state, const std::function<bool()>& should_stop)
-      : model_(model), now_(state), stepper_(stepper), should_stop_(should_stop), seen_(state.swept_organ.size()) {
+      : model_(model),
+        now_(state),
+        stepper_(stepper),
+        should_stop_(should_stop),
+        mean_(mean_position()),
+        seen_(state.swept_organ.size()) {
     trial_.was_cut.assign(model.organs.size(), 0);
   }
 
@@ -30,17 +37,32 @@ class Trial {
     scenes::ScriptPlayer player(script, model_.tools, model_.tick);
     for (std::int64_t tick = 0; tick < player.tick_count(); ++tick) {
       if (stops(tick)) return std::nullopt;
-      const stepping::StepReport report = step(player.at(tick));
+      const Inputs inputs = player.at(tick);
+      const stepping::StepReport report = step(inputs);
       if (trial_.is_refused) return finished();
       player.feel(tick, report.of_hand(player.hand_at(tick)).tool_force);
       look(report);
-      if (until_cut && trial_.most_force > 0 && trial_.severed > 0 && trial_.was_cut[*until_cut]) return finished();
+      const bool has_blade = model_.is_scalpel(inputs.tool) || model_.is_scalpel(inputs.second.tool);
+      if (has_blade) follow(tick, report);
+      if (until_cut && !has_blade && trial_.most_force > 0 && trial_.severed > 0 && trial_.was_cut[*until_cut])
+        return finished();
     }
     return finished();
   }
 
  private:
   bool stops(std::int64_t tick) const { return tick % kStretch == 0 && should_stop_ && should_stop_(); }
+
+  void follow(std::int64_t tick, const stepping::StepReport& report) {
+    trial_.is_inside_out = trial_.is_inside_out || report.inverted > 0;
+    if (tick % kLook == 0) trial_.dragged = std::max(trial_.dragged, norm(mean_position() - mean_));
+  }
+
+  Vec3 mean_position() const {
+    Vec3 sum;
+    for (std::size_t i = 0; i < now_.position.size(); ++i) sum += now_.position[i];
+    return sum / double(now_.position.size());
+  }
 
   stepping::StepReport step(const Inputs& inputs) {
     const double start = processor_time();
@@ -71,6 +93,7 @@ class Trial {
   State now_;
   stepping::Stepper& stepper_;
   const std::function<bool()>& should_stop_;
+  Vec3 mean_;         ///< of all spheres at the start
   std::size_t seen_;  ///< rows of the swept surface that were looked at, times their nodes
   ScriptTrial trial_;
   std::vector<double> work_, busy_;  ///< processor time of all ticks, and of those in contact or in a cut [s]
