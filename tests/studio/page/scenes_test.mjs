@@ -142,6 +142,7 @@ step("a place that is taken, and a scene that is open elsewhere, stay as they ar
   await other.click("header nav button:has-text('Author')");
   await other.click(".scenes button:has(span:text-is('skin'))");
   await other.waitForSelector(".verdict[aria-busy=false]");
+  await page.bringToFront(); // a page in the back draws once a second
   await more("skin").click();
   await form().locator("input").fill("hide");
   await button("Rename", ".scene-form").click();
