@@ -1,6 +1,7 @@
 #include "core/cutbody/cut_grid.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "core/cutting/beyond_skin.h"
@@ -116,7 +117,7 @@ void CutGrid::find_surface() {
         const double middle = 0.5 * (inside + outside);
         (depth_.at(organ, p + middle * (q - p)) > 0 ? inside : outside) = middle;
       }
-      outer_[edge(i, d)] = {std::clamp(float(0.5 * (inside + outside)), kOuterFromEnd, 1 - kOuterFromEnd), {}};
+      outer_[edge(i, d)] = {std::clamp(float(0.5 * (inside + outside)), kOuterFromEnd, 1 - kOuterFromEnd)};
       parted_[std::size_t(i)] |= std::uint8_t(1 << d);
     }
 }
@@ -360,12 +361,14 @@ std::optional<CutGrid::Crossing> CutGrid::cut_crossing(Index node, int direction
 
 CutGrid::Crossing CutGrid::outer_crossing(Index node, int direction) const {
   const Outer& outer = outer_.at(edge(node, direction));
-  if (!outer.normal) {
+  const std::atomic_ref known(outer.triangle);
+  Index triangle = known.load(std::memory_order_relaxed);
+  if (triangle == kUnknown) {
     const Vec3 p = rest(node);
-    const Index triangle = nearest_triangle(p + double(outer.along) * (rest(end(node, direction)) - p));
-    outer.normal = triangle < 0 ? Vec3{} : normal_of(triangle);
+    triangle = nearest_triangle(p + double(outer.along) * (rest(end(node, direction)) - p));
+    known.store(triangle, std::memory_order_relaxed);
   }
-  return {outer.along, *outer.normal};
+  return {outer.along, triangle < 0 ? Vec3{} : normal_of(triangle)};
 }
 
 Vec3 CutGrid::normal_of(Index triangle) const {

@@ -78,7 +78,6 @@ class CutGrid {
   /// The triangle of the organ's own surface that is nearest to a place at rest near it; -1: none is near.
   Index nearest_triangle(Vec3 rest) const { return depth_.nearest_triangle(std::size_t(organ_), rest); }
   /// Where the organ's own surface crosses an edge that leaves the tissue.
-  /// For one thread at a time: it remembers what it found.
   Crossing outer_crossing(Index node, int direction) const;
   /// The crossing of an edge with the swept surface that is nearest to its lower node or to its upper one, for it may
   /// cross more than once; none if it does not.
@@ -184,8 +183,11 @@ class CutGrid {
   std::vector<std::uint8_t> parted_;  ///< of each node: a bit for each direction
   struct Outer {
     float along;
-    mutable std::optional<Vec3> normal;  ///< once it was asked for
+    /// The triangle that crosses it, once it was asked for; -1: none is near. Read and written as an atomic: threads
+    /// that find it find the same.
+    mutable Index triangle = kUnknown;
   };
+  static constexpr Index kUnknown = -2;
   std::unordered_map<std::size_t, Outer> outer_;  ///< crossings of edges with the organ's surface
   std::unordered_map<std::size_t, Cut> cuts_;
   /// Edges that the swept surface crosses outside the tissue, where it goes on among the spheres there.

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <utility>
 
 #include "core/cutbody/cut_mesh.h"
@@ -93,18 +92,6 @@ struct BlockSurface {
   }
 };
 
-/// Has make_all() let another thread go first.
-class Wanted {
- public:
-  explicit Wanted(std::atomic<bool>& is_wanted) : is_wanted_(is_wanted) { is_wanted_ = true; }
-  ~Wanted() { is_wanted_ = false, is_wanted_.notify_one(); }
-  Wanted(const Wanted&) = delete;
-  Wanted& operator=(const Wanted&) = delete;
-
- private:
-  std::atomic<bool>& is_wanted_;
-};
-
 }  // namespace
 
 double CutPatch::opening(std::int32_t vertex) {
@@ -116,7 +103,7 @@ double CutPatch::opening(std::int32_t vertex) {
 }
 
 struct CutPatches::Parts {
-  Parts(const Model& model, std::size_t organ) : grid(model, organ), binding(model, grid) {
+  Parts(const Model& model, std::size_t organ) : grid(model, organ), binding(model, grid), ahead(model, grid) {
     const OrganRange& range = model.organs[organ];
     for (std::int32_t s = 0; s < range.count; ++s) {
       const Index node = grid.node_of_sphere(s);
@@ -125,11 +112,10 @@ struct CutPatches::Parts {
   }
 
   CutGrid grid;
-  SideBinding binding;
+  SideBinding binding, ahead;                   ///< of who asks for patches, and of make_all()
+  std::vector<CutGrid::NodeBox> ahead_changed;  ///< what `ahead` has not been told of
   std::vector<Index> bin_of_sphere;
-  std::shared_ptr<const State> seen;    ///< what is followed
-  std::mutex making;                    ///< of patches, by whom has it
-  std::atomic<bool> is_wanted = false;  ///< somebody waits for a patch
+  std::shared_ptr<const State> seen;  ///< what is followed
 };
 
 CutPatches::CutPatches(const Model& model, std::size_t organ, StageWatch* watch)
@@ -144,30 +130,37 @@ void CutPatches::prepare() {
 void CutPatches::follow(std::shared_ptr<const State> state) {
   const bool was_followed = parts_ && parts_->seen;
   if (cutting::sweeps_same(was_followed ? *parts_->seen : State{}, *state, std::int32_t(organ_))) {
-    if (was_followed) parts_->binding.forget();
+    if (was_followed) parts_->binding.forget(), parts_->ahead.forget();
     return;
   }
   prepare();
   parts_->seen = std::move(state);
   (void)parts_->grid.update(*parts_->seen);
-  parts_->binding.update(parts_->grid.take_changed());
+  const CutGrid::NodeBox changed = parts_->grid.take_changed();
+  parts_->binding.update(changed), parts_->ahead_changed.push_back(changed);
   cover();
 }
 
 void CutPatches::make_all(const std::stop_token& stop) {
-  for (Covered& covered : covered_) {
-    parts_->is_wanted.wait(true);
-    if (stop.stop_requested()) return;
-    make_once(covered);
-  }
+  if (!parts_) return;
+  for (const CutGrid::NodeBox& changed : std::exchange(parts_->ahead_changed, {})) parts_->ahead.update(changed);
+  for (Covered& covered : covered_)
+    if (!stop.stop_requested()) (void)make_once(covered, parts_->ahead);
 }
 
-void CutPatches::make_once(Covered& covered) {
-  const std::lock_guard lock(parts_->making);
-  const std::atomic_ref is_made(covered.is_made);
-  if (is_made.load(std::memory_order_relaxed)) return;
-  covered.patches = make(covered.block);
-  is_made.store(true, std::memory_order_release);
+/// Makes the patches of a block. Returns whether they are made; else another thread makes them now.
+bool CutPatches::make_once(Covered& covered, SideBinding& binding) {
+  const std::atomic_ref making(covered.making);
+  Making was = Making::not_yet;
+  if (!making.compare_exchange_strong(was, Making::now, std::memory_order_acquire)) return was == Making::done;
+  try {
+    covered.patches = make(covered.block, binding);
+  } catch (...) {
+    making.store(Making::not_yet, std::memory_order_release), making.notify_all();
+    throw;
+  }
+  making.store(Making::done, std::memory_order_release), making.notify_all();
+  return true;
 }
 
 void CutPatches::cover() {
@@ -252,10 +245,10 @@ CutPatch* CutPatches::patch(Index block, std::int32_t vertex) {
 }
 
 std::vector<std::unique_ptr<CutPatch>>& CutPatches::made(Covered& covered) {
-  if (!std::atomic_ref(covered.is_made).load(std::memory_order_acquire)) {
-    const InStage making(watch_, Stage::cut_surface);
-    const Wanted wanted(parts_->is_wanted);
-    make_once(covered);
+  const std::atomic_ref making(covered.making);
+  if (making.load(std::memory_order_acquire) != Making::done) {
+    const InStage stage(watch_, Stage::cut_surface);
+    while (!make_once(covered, parts_->binding)) making.wait(Making::now, std::memory_order_acquire);
   }
   if (std::exchange(covered.round, round_) != round_)
     for (const auto& patch : covered.patches) patch->body.surface.begin(*position_);
@@ -301,8 +294,8 @@ static BlockSurface surface_of_block(const CutGrid& grid, CutGrid::Index block,
   return result;
 }
 
-std::vector<std::unique_ptr<CutPatch>> CutPatches::make(Index block) {
-  const BlockSurface all = surface_of_block(parts_->grid, block, piece_, parts_->binding, *parts_->seen);
+std::vector<std::unique_ptr<CutPatch>> CutPatches::make(Index block, SideBinding& binding) {
+  const BlockSurface all = surface_of_block(parts_->grid, block, piece_, binding, *parts_->seen);
   std::vector<std::int32_t> pieces(all.piece);
   std::sort(pieces.begin(), pieces.end());
   pieces.erase(std::unique(pieces.begin(), pieces.end()), pieces.end());

@@ -15,6 +15,8 @@
 
 namespace ctpm::cutbody {
 
+class SideBinding;
+
 /// What cuts make of the surface of one piece of tissue in one block of the grid, as a body that is touched.
 struct CutPatch {
   /// A vertex of another wall, or of the same one.
@@ -59,8 +61,8 @@ class CutPatches {
   /// Follows the swept surface of `state`. Where it is the same in this organ, patches stay, and what would make new
   /// ones fast is forgotten.
   void follow(std::shared_ptr<const State> state);
-  /// Makes the patches that nobody has asked for yet, until it is told to stop. Other threads may ask for patches
-  /// meanwhile; they do not wait for more than one block.
+  /// Makes the patches that nobody has asked for yet, until it is told to stop. One other thread may ask for patches
+  /// meanwhile: it makes them itself, and waits for one only if this call is making it.
   void make_all(const std::stop_token& stop);
   bool is_cut() const { return !covered_.empty(); }
   /// For each sphere of the organ the lowest node of its piece; -1: it is in none (sphere_count, or empty).
@@ -91,11 +93,12 @@ class CutPatches {
 
  private:
   struct Parts;
+  enum class Making : std::uint8_t { not_yet, now, done };
   /// A block that is covered.
   struct Covered {
     Index block, bin;
-    Box rest{Vec3{}};      ///< around it [m]
-    bool is_made = false;  ///< read and written as an atomic
+    Box rest{Vec3{}};                 ///< around it [m]
+    Making making = Making::not_yet;  ///< of its patches; read and written as an atomic
     std::vector<std::unique_ptr<CutPatch>> patches{};
     std::uint32_t round = 0;  ///< in which they were placed
   };
@@ -114,8 +117,8 @@ class CutPatches {
   void cover();
   void find_displacements();
   std::vector<std::unique_ptr<CutPatch>>& made(Covered& covered);
-  void make_once(Covered& covered);
-  std::vector<std::unique_ptr<CutPatch>> make(Index block);
+  bool make_once(Covered& covered, SideBinding& binding);
+  std::vector<std::unique_ptr<CutPatch>> make(Index block, SideBinding& binding);
 
   const Model& model_;
   const std::size_t organ_;

@@ -3,6 +3,7 @@
 #include "core/cutbody/cut_patches.h"
 
 #include <memory>
+#include <thread>
 
 #include "tests/core/blade_blocks.h"
 #include "tests/core/skinned_block.h"
@@ -84,6 +85,21 @@ TEST(CutPatches, StayWhereOnlyAnotherOrganIsCutAndGoOnAsIfTheyHadBeenMadeAnew) {
   cutbody::CutPatches fresh(model, 0);
   fresh.follow(std::make_shared<State>(state));
   expect_same(all_patches(followed, state), all_patches(fresh, state));
+}
+
+TEST(CutPatches, AreTheSameWhoeverMakesThem) {
+  const Model model = two_blocks();
+  State state = rest_state(model);
+  for (const double x : {0.0013, 0.0253}) sweep(state, 0, x);
+  cutbody::CutPatches alone(model, 0);
+  alone.follow(std::make_shared<State>(state));
+  const std::vector<cutbody::CutPatch*> expected = all_patches(alone, state);
+  for (int round = 0; round < 3; ++round) {
+    cutbody::CutPatches shared(model, 0);
+    shared.follow(std::make_shared<State>(state));
+    std::jthread ahead([&](const std::stop_token& stop) { shared.make_all(stop); });
+    expect_same(all_patches(shared, state), expected);
+  }
 }
 
 }  // namespace
