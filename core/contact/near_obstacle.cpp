@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "core/contact/moved.h"
 
@@ -14,23 +16,21 @@ NearObstacle::NearObstacle(const Model& model, surface::Body& body, const surfac
   // As long as nothing is cut, ticks take no memory.
   const surface::NearSurface& surface = body.surface;
   const std::size_t most = surface.vertex_count() + surface.groups().size() + surface.patches().size();
-  for (std::vector<Item>* items : {&waiting_, &always_, &due_}) items->reserve(most);
+  for (std::vector<Item>* items : {&always_, &due_}) items->reserve(most);
   found_.reserve(surface.vertex_count()), position_.resize(std::size_t(organ_.count));
   begin_anew();
 }
 
 const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& position) {
-  const double moved = has_begun_ ? farthest_moved(position_, position, std::size_t(organ_.first)) : 0;
-  path_ += moved;
+  const double moved = has_begun_ ? moved_to(position) : 0;
+  path_ += moved, ++round_;
   if (version_ != cuts_.version() || !std::isfinite(moved)) begin_anew();
   has_begun_ = true;
   for (std::size_t s = 0; s < position_.size(); ++s) position_.set(s, position[std::size_t(organ_.first) + s]);
   found_.clear();
   due_.insert(due_.end(), always_.begin(), always_.end()), always_.clear();
-  while (!waiting_.empty() && waiting_.front().due <= path_) {
-    due_.push_back(waiting_.front());
-    std::pop_heap(waiting_.begin(), waiting_.end()), waiting_.pop_back();
-  }
+  for (std::size_t region = 0; region < regions_.size(); ++region)
+    if (due_at_[region] <= path_) take_due(region);
   while (!due_.empty()) {
     const Item item = due_.back();
     due_.pop_back();
@@ -41,33 +41,90 @@ const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& posi
   return found_;
 }
 
+/// How far the farthest sphere has moved since the last round, as far as that may bring it nearer [m].
+double NearObstacle::moved_to(const Vec3Array& position) const {
+  const Vec3* way = shape_.only_way();
+  const auto first = std::size_t(organ_.first);
+  return way != nullptr ? farthest_moved_along(*way, position_, position, first)
+                        : farthest_moved(position_, position, first);
+}
+
 /// All is to be looked at.
 void NearObstacle::begin_anew() {
   version_ = cuts_.version(), path_ = 0;
-  parts_.clear(), waiting_.clear(), always_.clear(), due_.clear();
+  parts_.clear(), regions_.clear(), due_at_.clear(), always_.clear(), due_.clear();
   add_part(body_, nullptr, {-1, 0});
-  if (cutbody::CutPatches* const patches = cuts_.patches(std::size_t(body_.organ)))
-    for (std::size_t block = 0; block < patches->covered_count(); ++block)
-      due_.push_back({0, Kind::block, -1, std::int32_t(block)});
+  cutbody::CutPatches* const patches = cuts_.patches(std::size_t(body_.organ));
+  if (patches == nullptr) return;
+  Region blocks{-1, std::vector<std::int32_t>(std::size_t(organ_.count))};
+  std::iota(blocks.sphere.begin(), blocks.sphere.end(), 0);
+  const auto number = std::int32_t(regions_.size());
+  add_region(std::move(blocks), patches->covered_count());
+  for (std::size_t block = 0; block < patches->covered_count(); ++block)
+    due_.push_back({0, Kind::block, number, std::int32_t(block)});
 }
 
 void NearObstacle::add_part(surface::Body& body, cutbody::CutPatch* patch, std::array<std::int32_t, 2> order) {
   const auto part = std::int32_t(parts_.size());
-  parts_.push_back({&body, patch, order, std::vector<std::int32_t>(body.surface.vertex_count(), -1)});
+  const surface::NearSurface& surface = body.surface;
+  parts_.push_back({&body, patch, order, std::vector<std::int32_t>(surface.vertex_count(), -1)});
   std::vector<std::int32_t>& first_corner = parts_.back().first_corner;
   std::int32_t corner = 0;
-  for (const surface::NearSurface::Triangle& triangle : body.surface.triangles())
+  for (const surface::NearSurface::Triangle& triangle : surface.triangles())
     for (const std::int32_t vertex : triangle.corner) {
       if (first_corner[std::size_t(vertex)] < 0) first_corner[std::size_t(vertex)] = corner;
       ++corner;
     }
-  for (std::size_t group = 0; group < body.surface.groups().size(); ++group)
-    due_.push_back({0, Kind::group, part, std::int32_t(group)});
+  for (std::size_t group = 0; group < surface.groups().size(); ++group) {
+    const surface::NearSurface::Bound& bound = surface.groups()[group];
+    Region region{part, {}};
+    surface.for_each_sphere(bound, [&](std::int32_t sphere) { region.sphere.push_back(sphere - organ_.first); });
+    due_.push_back({0, Kind::group, std::int32_t(regions_.size()), std::int32_t(group)});
+    // Of its patches and their vertices no more wait than it has corners.
+    add_region(std::move(region),
+               std::size_t(3 * surface::NearSurface::kTrianglesPerPatch * (bound.last - bound.first)));
+  }
+}
+
+/// `most`: of it wait at a time.
+void NearObstacle::add_region(Region region, std::size_t most) {
+  region.seen.resize(region.sphere.size()), region.waiting.reserve(most);
+  regions_.push_back(std::move(region)), due_at_.push_back(INFINITY);
+}
+
+/// Adds to its path how far its spheres have moved.
+void NearObstacle::bring_up_to_date(Region& region) {
+  if (region.round == round_) return;
+  const Vec3* way = shape_.only_way();
+  double farthest = 0;
+  for (std::size_t i = 0; i < region.sphere.size(); ++i) {
+    const Vec3 now = position_[std::size_t(region.sphere[i])], by = now - std::exchange(region.seen[i], now);
+    farthest = std::max(farthest, way != nullptr ? std::abs(dot(by, *way)) : norm(by));
+  }
+  if (region.round != 0) region.path += farthest;
+  region.round = round_;
+}
+
+/// Has what is due of a region be looked at.
+void NearObstacle::take_due(std::size_t number) {
+  Region& region = regions_[number];
+  bring_up_to_date(region);
+  std::vector<Item>& waiting = region.waiting;
+  for (; !waiting.empty() && waiting.front().due <= region.path; waiting.pop_back())
+    due_.push_back(waiting.front()), std::pop_heap(waiting.begin(), waiting.end());
+  due_at_[number] = INFINITY;
+  if (!waiting.empty()) schedule(number);
+}
+
+/// Its spheres move no farther than the farthest of all.
+void NearObstacle::schedule(std::size_t number) {
+  const Region& region = regions_[number];
+  due_at_[number] = std::min(due_at_[number], path_ + (region.waiting.front().due - region.path));
 }
 
 void NearObstacle::look_at(Item item) {
-  if (item.part >= 0 && parts_[std::size_t(item.part)].patch != nullptr)
-    cuts_.begin(*parts_[std::size_t(item.part)].patch);
+  const std::int32_t part = regions_[std::size_t(item.region)].part;
+  if (part >= 0 && parts_[std::size_t(part)].patch != nullptr) cuts_.begin(*parts_[std::size_t(part)].patch);
   switch (item.kind) {
     case Kind::block:
       return look_at_block(item);
@@ -81,8 +138,11 @@ void NearObstacle::look_at(Item item) {
 
 void NearObstacle::wait(Item item, double clearance, double stretch) {
   if (!(clearance > kRounding)) return always_.push_back(item);
-  item.due = path_ + (clearance - kRounding) / stretch;
-  waiting_.push_back(item), std::push_heap(waiting_.begin(), waiting_.end());
+  Region& region = regions_[std::size_t(item.region)];
+  bring_up_to_date(region);
+  item.due = region.path + (clearance - kRounding) / stretch;
+  region.waiting.push_back(item), std::push_heap(region.waiting.begin(), region.waiting.end());
+  schedule(std::size_t(item.region));
 }
 
 void NearObstacle::look_at_block(Item item) {
@@ -96,7 +156,8 @@ void NearObstacle::look_at_block(Item item) {
 
 /// Looks at a run of triangles or of patches by its box.
 void NearObstacle::look_at_bound(Item item) {
-  const Part& part = parts_[std::size_t(item.part)];
+  const std::int32_t part_number = regions_[std::size_t(item.region)].part;
+  const Part& part = parts_[std::size_t(part_number)];
   const surface::NearSurface& surface = part.body->surface;
   const bool is_group = item.kind == Kind::group;
   const surface::NearSurface::Bound& bound =
@@ -105,26 +166,28 @@ void NearObstacle::look_at_bound(Item item) {
   if (clearance > 0) return wait(item, clearance, surface.stretch());
   if (is_group) {
     for (std::int32_t patch = bound.first; patch < bound.last; ++patch)
-      due_.push_back({0, Kind::patch, item.part, patch});
+      due_.push_back({0, Kind::patch, item.region, patch});
     return;
   }
   for (std::int32_t corner = 3 * bound.first; corner < 3 * bound.last; ++corner) {
     const std::int32_t vertex = surface.triangles()[std::size_t(corner / 3)].corner[corner % 3];
     if (part.first_corner[std::size_t(vertex)] != corner) continue;
     if (part.patch != nullptr || !cuts_.hides(part.body->first_vertex + vertex))
-      due_.push_back({0, Kind::vertex, item.part, vertex});
+      due_.push_back({0, Kind::vertex, item.region, vertex});
   }
 }
 
 void NearObstacle::look_at_vertex(Item item) {
-  const Part& part = parts_[std::size_t(item.part)];
+  const std::int32_t part_number = regions_[std::size_t(item.region)].part;
+  const Part& part = parts_[std::size_t(part_number)];
   surface::NearSurface& surface = part.body->surface;
   const double turns = surface.offset_size(item.number);
   double depth;
   if (turns > 0 && (depth = shape_.inside(surface.carried(item.number)).depth) + turns < 0)
     return wait(item, -depth - turns, surface.stretch());
   const surface::Inside inside = shape_.inside(surface.place(item.number));
-  if (inside.depth > 0) found_.push_back({item.part, item.number, part.first_corner[std::size_t(item.number)], inside});
+  if (inside.depth > 0)
+    found_.push_back({part_number, item.number, part.first_corner[std::size_t(item.number)], inside});
   wait(item, turns > 0 ? 0 : -inside.depth, surface.stretch());
 }
 

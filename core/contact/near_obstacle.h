@@ -12,8 +12,9 @@
 namespace ctpm::contact {
 
 /// Which vertices of an organ and of its cuts are inside an obstacle. How far each was away is known from when it was
-/// looked at, and it is looked at again only when it may have come so far: what is far or at rest costs nothing. Parts
-/// of surfaces are looked at by their boxes until these may be inside. When something was looked at changes no result.
+/// looked at, and it is looked at again only when the spheres that it follows may have brought it so far: what is far
+/// or at rest costs nothing. Parts of surfaces are looked at by their boxes until these may be inside. When something
+/// was looked at changes no result.
 class NearObstacle {
  public:
   /// A vertex that is inside.
@@ -39,18 +40,32 @@ class NearObstacle {
   const std::vector<Part>& parts() const { return parts_; }
 
  private:
-  /// Something that is outside as long as its organ's spheres have not moved to `due`.
+  /// Something that is outside as long as its region's path is shorter than `due`.
   enum class Kind : std::uint8_t { block, group, patch, vertex };
   struct Item {
-    double due;  ///< in path_ [m]
+    double due;  ///< [m]
     Kind kind;
-    std::int32_t part, number;
+    std::int32_t region, number;
 
     bool operator<(const Item& other) const { return due > other.due; }  // the first due is on top of a heap
   };
+  /// A group of triangles of a part, or all blocks of the cuts (part -1), and the spheres that it follows.
+  struct Region {
+    std::int32_t part;
+    std::vector<std::int32_t> sphere;  ///< within the organ
+    std::vector<Vec3> seen{};          ///< where they were when it was last brought up to date [m]
+    double path = 0;                   ///< sum of how far the farthest of them moved from one of these to the next [m]
+    std::uint32_t round = 0;           ///< in which it was last brought up to date; 0: it never was
+    std::vector<Item> waiting{};       ///< heap
+  };
 
+  double moved_to(const Vec3Array& position) const;
   void begin_anew();
   void add_part(surface::Body& body, cutbody::CutPatch* patch, std::array<std::int32_t, 2> order);
+  void add_region(Region region, std::size_t most);
+  void bring_up_to_date(Region& region);
+  void take_due(std::size_t region);
+  void schedule(std::size_t region);
   void look_at(Item item);
   void look_at_block(Item item);
   void look_at_bound(Item item);
@@ -63,12 +78,14 @@ class NearObstacle {
   CutSurfaces& cuts_;
   bool has_begun_ = false;
   std::uint32_t version_ = 0;
-  Vec3Array position_;  ///< of the organ's spheres in the last round [m]
-  double path_ = 0;     ///< sum over the rounds of how far the farthest of them moved [m]
+  Vec3Array position_;       ///< of the organ's spheres in the last round [m]
+  double path_ = 0;          ///< sum over the rounds of moved_to() [m]
+  std::uint32_t round_ = 0;  ///< number of rounds
   std::vector<Part> parts_;
-  std::vector<Item> waiting_;  ///< heap
-  std::vector<Item> always_;   ///< due in every round
-  std::vector<Item> due_;      ///< in this one
+  std::vector<Region> regions_;
+  std::vector<double> due_at_;  ///< of each region: nothing of it is due while path_ is shorter [m]
+  std::vector<Item> always_;    ///< due in every round
+  std::vector<Item> due_;       ///< in this one
   std::vector<Found> found_;
 };
 

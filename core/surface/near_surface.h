@@ -89,6 +89,12 @@ class NearSurface {
   /// Displacements from rest within which those of all vertices lie, or those of a patch or group [m].
   const Box& displacements() const;
   Box displacements(const Bound& bound) const;
+  /// Calls `visit(sphere)` for the Model's spheres by which the vertices of a patch or group move, but for what turns.
+  template <class Visit>
+  void for_each_sphere(const Bound& bound, Visit&& visit) const {
+    for (Index s = bound.first_sphere; s < bound.last_sphere; ++s)
+      visit(spheres_[std::size_t(bound_spheres_[std::size_t(s)])]);
+  }
   /// A vertex moves at most so many times as far as the farthest of its spheres.
   double stretch() const { return 1 + 2 * widen_; }
   /// Where a vertex is [m].

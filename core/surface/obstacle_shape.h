@@ -20,6 +20,8 @@ class ObstacleShape {
   bool meets(const Box& box) const;
   /// No point of `box` is nearer to the obstacle than this [m]; 0 or less: one may be inside.
   double clearance(const Box& box) const;
+  /// The only direction along which anything comes nearer to it, as to a plane; null: all are.
+  const Vec3* only_way() const { return kind_ == ObstacleKind::plane ? &half_space_.normal : nullptr; }
 
  private:
   Inside inside_box(Vec3 point) const;
