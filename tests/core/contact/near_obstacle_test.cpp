@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -55,8 +56,10 @@ std::vector<Seen> all_inside(surface::Body& body, contact::CutSurfaces& cuts, co
   return seen;
 }
 
-/// `turn`: by how much the block turns over in a tick [rad].
-void expect_all_found(Model model, const Obstacle& obstacle, State first, double turn = 0) {
+/// `turn`: by how much the block turns over in a tick [rad]. `moves`: which spheres do, by their places at rest; all if
+/// it is empty.
+void expect_all_found(Model model, const Obstacle& obstacle, State first, double turn = 0,
+                      const std::function<bool(Vec3)>& moves = {}) {
   model.obstacles = {obstacle};
   contact::CutSurfaces cuts(model);
   std::vector<surface::Body> bodies = surface::bodies_of(model), others = surface::bodies_of(model);
@@ -71,7 +74,10 @@ void expect_all_found(Model model, const Obstacle& obstacle, State first, double
     const double up = 0.004 * std::abs(std::sin(0.013 * tick)) + (tick > 500 && tick < 520 ? 0.03 : 0);
     const Quat over{std::cos(0.5 * turn * tick), std::sin(0.5 * turn * tick), 0, 0};
     for (std::size_t i = 0; i < rest.size(); ++i)
-      state.position.set(i, kMiddle + rotate(over, state.position[i] - kMiddle) + Vec3{0, 0, up - 0.001});
+      if (!moves || moves(rest[i]))
+        state.position.set(i, kMiddle + rotate(over, state.position[i] - kMiddle) + Vec3{0, 0, up - 0.001});
+      else
+        state.position.set(i, rest[i] - Vec3{0, 0, 0.001});
     cuts.begin_tick(state, false), cuts.begin(state.position);
     bodies[0].surface.begin(state.position), others[0].surface.begin(state.position);
     (void)cuts.wait_near(Box(Vec3{-1, -1, -1}, Vec3{1, 1, 1}), state, bodies[0].surface);
@@ -119,6 +125,15 @@ TEST(FarthestMoved, IsInfinitelyFarWhereAnyPlaceIsNotFinite) {
   }
 }
 
+TEST(FarthestMoved, AlongADirectionIsTheLargestPartOfAWayAlongIt) {
+  Vec3Array before(2), now(2);
+  now.set(0, {0.3, -0.4, 7}), now.set(1, {-1, 0, 0});
+  EXPECT_DOUBLE_EQ(contact::farthest_moved_along({0.6, 0.8, 0}, before, now), 0.6);
+  EXPECT_DOUBLE_EQ(contact::farthest_moved_along({0, 0, 1}, before, now), 7);
+  now.set(1, {NAN, 0, 0});
+  EXPECT_EQ(contact::farthest_moved_along({0, 0, 1}, before, now), INFINITY) << "along another direction too";
+}
+
 TEST(NearObstacle, FindsEachVertexThatIsInsideAPlaneWhileTissueMoves) {
   const Model model = block();
   expect_all_found(model, above(ObstacleKind::plane), rest_state(model));
@@ -137,6 +152,13 @@ TEST(NearObstacle, FindsThoseOfACutInsideABox) {
 TEST(NearObstacle, FindsThoseOfAThinStripThatTurnsOver) {
   const Model model = block();
   expect_all_found(model, above(ObstacleKind::plane), thin_strip(model), 0.01);
+}
+
+TEST(NearObstacle, FindsThoseOfAPartThatMovesWhileAllElseRests) {
+  const Model model = block();
+  const auto is_at_end = [](Vec3 rest) { return rest.x > 0.02; };
+  for (const ObstacleKind kind : {ObstacleKind::plane, ObstacleKind::box})
+    expect_all_found(model, above(kind, {0.02, 0.03, 0.01}), testing::half_cut(model, 0.012), 0, is_at_end);
 }
 
 }  // namespace
