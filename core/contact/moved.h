@@ -25,16 +25,4 @@ inline double farthest_moved(const Vec3Array& before, const Vec3Array& now, std:
   return is_finite ? std::sqrt(squared) : std::numeric_limits<double>::infinity();
 }
 
-/// The same along a direction alone, a unit vector.
-inline double farthest_moved_along(Vec3 way, const Vec3Array& before, const Vec3Array& now, std::size_t first = 0) {
-  double farthest = 0;
-  bool is_finite = true;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const double along = std::abs(way.x * (now.x[first + i] - before.x[i]) + way.y * (now.y[first + i] - before.y[i]) +
-                                  way.z * (now.z[first + i] - before.z[i]));
-    farthest = std::max(along, farthest), is_finite &= along <= std::numeric_limits<double>::max();
-  }
-  return is_finite ? farthest : std::numeric_limits<double>::infinity();
-}
-
 }  // namespace ctpm::contact

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -22,7 +21,7 @@ NearObstacle::NearObstacle(const Model& model, surface::Body& body, const surfac
 }
 
 const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& position) {
-  const double moved = has_begun_ ? moved_to(position) : 0;
+  const double moved = has_begun_ ? farthest_moved(position_, position, std::size_t(organ_.first)) : 0;
   path_ += moved, ++round_;
   if (version_ != cuts_.version() || !std::isfinite(moved)) begin_anew();
   has_begun_ = true;
@@ -41,14 +40,6 @@ const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& posi
   return found_;
 }
 
-/// How far the farthest sphere has moved since the last round, as far as that may bring it nearer [m].
-double NearObstacle::moved_to(const Vec3Array& position) const {
-  const Vec3* way = shape_.only_way();
-  const auto first = std::size_t(organ_.first);
-  return way != nullptr ? farthest_moved_along(*way, position_, position, first)
-                        : farthest_moved(position_, position, first);
-}
-
 /// All is to be looked at.
 void NearObstacle::begin_anew() {
   version_ = cuts_.version(), path_ = 0;
@@ -56,10 +47,8 @@ void NearObstacle::begin_anew() {
   add_part(body_, nullptr, {-1, 0});
   cutbody::CutPatches* const patches = cuts_.patches(std::size_t(body_.organ));
   if (patches == nullptr) return;
-  Region blocks{-1, std::vector<std::int32_t>(std::size_t(organ_.count))};
-  std::iota(blocks.sphere.begin(), blocks.sphere.end(), 0);
   const auto number = std::int32_t(regions_.size());
-  add_region(std::move(blocks), patches->covered_count());
+  add_region({-1, {}}, patches->covered_count());
   for (std::size_t block = 0; block < patches->covered_count(); ++block)
     due_.push_back({0, Kind::block, number, std::int32_t(block)});
 }
@@ -92,9 +81,11 @@ void NearObstacle::add_region(Region region, std::size_t most) {
   regions_.push_back(std::move(region)), due_at_.push_back(INFINITY);
 }
 
-/// Adds to its path how far its spheres have moved.
+/// Adds to its path how far its spheres have moved, and to a plane how far along its normal. Blocks have the path of
+/// all spheres: what turns in them may come nearer though no sphere does.
 void NearObstacle::bring_up_to_date(Region& region) {
-  if (region.round == round_) return;
+  if (region.part < 0) region.path = path_;
+  if (region.part < 0 || region.round == round_) return;
   const Vec3* way = shape_.only_way();
   double farthest = 0;
   for (std::size_t i = 0; i < region.sphere.size(); ++i) {
@@ -119,7 +110,8 @@ void NearObstacle::take_due(std::size_t number) {
 /// Its spheres move no farther than the farthest of all.
 void NearObstacle::schedule(std::size_t number) {
   const Region& region = regions_[number];
-  due_at_[number] = std::min(due_at_[number], path_ + (region.waiting.front().due - region.path));
+  const double due = region.waiting.front().due;
+  due_at_[number] = std::min(due_at_[number], region.part < 0 ? due : path_ + (due - region.path));
 }
 
 void NearObstacle::look_at(Item item) {

@@ -49,7 +49,7 @@ class NearObstacle {
 
     bool operator<(const Item& other) const { return due > other.due; }  // the first due is on top of a heap
   };
-  /// A group of triangles of a part, or all blocks of the cuts (part -1), and the spheres that it follows.
+  /// A group of triangles of a part and the spheres that it follows, or all blocks of the cuts (part -1).
   struct Region {
     std::int32_t part;
     std::vector<std::int32_t> sphere;  ///< within the organ
@@ -59,7 +59,6 @@ class NearObstacle {
     std::vector<Item> waiting{};       ///< heap
   };
 
-  double moved_to(const Vec3Array& position) const;
   void begin_anew();
   void add_part(surface::Body& body, cutbody::CutPatch* patch, std::array<std::int32_t, 2> order);
   void add_region(Region region, std::size_t most);
@@ -79,7 +78,7 @@ class NearObstacle {
   bool has_begun_ = false;
   std::uint32_t version_ = 0;
   Vec3Array position_;       ///< of the organ's spheres in the last round [m]
-  double path_ = 0;          ///< sum over the rounds of moved_to() [m]
+  double path_ = 0;          ///< sum over the rounds of how far the farthest of them moved [m]
   std::uint32_t round_ = 0;  ///< number of rounds
   std::vector<Part> parts_;
   std::vector<Region> regions_;

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/cutbody/cut_mesh.h"
@@ -103,7 +104,7 @@ double CutPatch::opening(std::int32_t vertex) {
 }
 
 struct CutPatches::Parts {
-  Parts(const Model& model, std::size_t organ) : grid(model, organ), binding(model, grid), ahead(model, grid) {
+  Parts(const Model& model, std::size_t organ) : grid(model, organ), binding(model, grid) {
     const OrganRange& range = model.organs[organ];
     for (std::int32_t s = 0; s < range.count; ++s) {
       const Index node = grid.node_of_sphere(s);
@@ -112,7 +113,8 @@ struct CutPatches::Parts {
   }
 
   CutGrid grid;
-  SideBinding binding, ahead;                   ///< of who asks for patches, and of make_all()
+  SideBinding binding;                          ///< of who asks for patches
+  std::optional<SideBinding> ahead;             ///< of make_all(), once it was called
   std::vector<CutGrid::NodeBox> ahead_changed;  ///< what `ahead` has not been told of
   std::vector<Index> bin_of_sphere;
   std::shared_ptr<const State> seen;  ///< what is followed
@@ -130,7 +132,8 @@ void CutPatches::prepare() {
 void CutPatches::follow(std::shared_ptr<const State> state) {
   const bool was_followed = parts_ && parts_->seen;
   if (cutting::sweeps_same(was_followed ? *parts_->seen : State{}, *state, std::int32_t(organ_))) {
-    if (was_followed) parts_->binding.forget(), parts_->ahead.forget();
+    if (was_followed) parts_->binding.forget();
+    if (was_followed && parts_->ahead) parts_->ahead->forget();
     return;
   }
   prepare();
@@ -142,10 +145,17 @@ void CutPatches::follow(std::shared_ptr<const State> state) {
 }
 
 void CutPatches::make_all(const std::stop_token& stop) {
-  if (!parts_) return;
-  for (const CutGrid::NodeBox& changed : std::exchange(parts_->ahead_changed, {})) parts_->ahead.update(changed);
-  for (Covered& covered : covered_)
-    if (!stop.stop_requested()) (void)make_once(covered, parts_->ahead);
+  if (!is_cut() || stop.stop_requested()) return;
+  std::optional<SideBinding>& ahead = parts_->ahead;
+  try {
+    if (!ahead) ahead.emplace(model_, parts_->grid), parts_->ahead_changed.clear();
+    for (const CutGrid::NodeBox& changed : std::exchange(parts_->ahead_changed, {})) ahead->update(changed);
+    for (Covered& covered : covered_)
+      if (!stop.stop_requested()) (void)make_once(covered, *ahead);
+  } catch (...) {
+    ahead.reset();  // it may be half done
+    throw;
+  }
 }
 
 /// Makes the patches of a block. Returns whether they are made; else another thread makes them now.

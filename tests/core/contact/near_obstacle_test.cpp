@@ -125,15 +125,6 @@ TEST(FarthestMoved, IsInfinitelyFarWhereAnyPlaceIsNotFinite) {
   }
 }
 
-TEST(FarthestMoved, AlongADirectionIsTheLargestPartOfAWayAlongIt) {
-  Vec3Array before(2), now(2);
-  now.set(0, {0.3, -0.4, 7}), now.set(1, {-1, 0, 0});
-  EXPECT_DOUBLE_EQ(contact::farthest_moved_along({0.6, 0.8, 0}, before, now), 0.6);
-  EXPECT_DOUBLE_EQ(contact::farthest_moved_along({0, 0, 1}, before, now), 7);
-  now.set(1, {NAN, 0, 0});
-  EXPECT_EQ(contact::farthest_moved_along({0, 0, 1}, before, now), INFINITY) << "along another direction too";
-}
-
 TEST(NearObstacle, FindsEachVertexThatIsInsideAPlaneWhileTissueMoves) {
   const Model model = block();
   expect_all_found(model, above(ObstacleKind::plane), rest_state(model));
