@@ -70,8 +70,9 @@ void NearObstacle::add_part(surface::Body& body, cutbody::CutPatch* patch, std::
     surface.for_each_sphere(bound, [&](std::int32_t sphere) { region.sphere.push_back(sphere - organ_.first); });
     due_.push_back({0, Kind::group, std::int32_t(regions_.size()), std::int32_t(group)});
     // Of its patches and their vertices no more wait than it has corners.
-    add_region(std::move(region),
-               std::size_t(3 * surface::NearSurface::kTrianglesPerPatch * (bound.last - bound.first)));
+    const auto triangles =
+        surface.patches()[std::size_t(bound.last) - 1].last - surface.patches()[std::size_t(bound.first)].first;
+    add_region(std::move(region), std::size_t(3 * triangles));
   }
 }
 
@@ -81,8 +82,8 @@ void NearObstacle::add_region(Region region, std::size_t most) {
   regions_.push_back(std::move(region)), due_at_.push_back(INFINITY);
 }
 
-/// Adds to its path how far its spheres have moved, and to a plane how far along its normal. Blocks have the path of
-/// all spheres: what turns in them may come nearer though no sphere does.
+/// Adds to its path how far its spheres have moved. Before a plane only the way along its normal counts. Blocks have
+/// the path of all spheres: what turns in them may come nearer though no sphere does.
 void NearObstacle::bring_up_to_date(Region& region) {
   if (region.part < 0) region.path = path_;
   if (region.part < 0 || region.round == round_) return;
