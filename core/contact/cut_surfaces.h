@@ -81,6 +81,8 @@ class CutSurfaces {
   void near(std::size_t organ, const Region& region, Visit&& visit) {
     if (is_cut_ && organs_[organ]) organs_[organ]->near(region, visit);
   }
+  /// A vertex of a patch moves at most so many times as far as the farthest sphere.
+  double stretch();
   /// The patches of an organ; null: nothing of it is cut that is touched.
   cutbody::CutPatches* patches(std::size_t organ) {
     return is_cut_ && organs_[organ] && organs_[organ]->is_cut() ? &*organs_[organ] : nullptr;
@@ -100,6 +102,7 @@ class CutSurfaces {
   StageWatch* watch_;
   cutbody::CutPoints points_;
   std::vector<std::optional<cutbody::CutPatches>> organs_;  ///< empty where an organ's cuts are not touched
+  double spacing_ = 0;                                      ///< the largest of all organs [m]
   bool is_cut_ = false;
   std::uint32_t version_ = 0;
   std::vector<std::uint8_t> hidden_;  ///< (vertex_count through all organs, or empty)

@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 #include "core/contact/moved.h"
 
 namespace ctpm::contact {
+namespace {
+
+/// A path is begun anew from here on: beside a longer one, as after an explosion, the ways of ticks would be lost in
+/// rounding [m].
+constexpr double kLongestPath = 1e3;
+
+}  // namespace
 
 NearObstacle::NearObstacle(const Model& model, surface::Body& body, const surface::ObstacleShape& shape,
                            CutSurfaces& cuts)
@@ -17,13 +23,14 @@ NearObstacle::NearObstacle(const Model& model, surface::Body& body, const surfac
   const std::size_t most = surface.vertex_count() + surface.groups().size() + surface.patches().size();
   for (std::vector<Item>* items : {&always_, &due_}) items->reserve(most);
   found_.reserve(surface.vertex_count()), position_.resize(std::size_t(organ_.count));
-  begin_anew();
+  find_parts();
 }
 
 const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& position) {
   const double moved = has_begun_ ? farthest_moved(position_, position, std::size_t(organ_.first)) : 0;
   path_ += moved, ++round_;
-  if (version_ != cuts_.version() || !std::isfinite(moved)) begin_anew();
+  if (version_ != cuts_.version()) find_parts();
+  if (!(path_ < kLongestPath)) look_at_all();
   has_begun_ = true;
   for (std::size_t s = 0; s < position_.size(); ++s) position_.set(s, position[std::size_t(organ_.first) + s]);
   found_.clear();
@@ -35,28 +42,36 @@ const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& posi
     due_.pop_back();
     look_at(item);
   }
-  const auto key = [&](const Found& f) { return std::tuple(parts_[std::size_t(f.part)].order, f.order); };
+  const auto key = [](const Found& f) { return std::pair(f.part, f.order); };
   std::sort(found_.begin(), found_.end(), [&](const Found& a, const Found& b) { return key(a) < key(b); });
   return found_;
 }
 
-/// All is to be looked at.
-void NearObstacle::begin_anew() {
-  version_ = cuts_.version(), path_ = 0;
-  parts_.clear(), regions_.clear(), due_at_.clear(), always_.clear(), due_.clear();
-  add_part(body_, nullptr, {-1, 0});
-  cutbody::CutPatches* const patches = cuts_.patches(std::size_t(body_.organ));
-  if (patches == nullptr) return;
-  const auto number = std::int32_t(regions_.size());
-  add_region({-1, {}}, patches->covered_count());
-  for (std::size_t block = 0; block < patches->covered_count(); ++block)
-    due_.push_back({0, Kind::block, number, std::int32_t(block)});
+/// Begins with the parts that there are.
+void NearObstacle::find_parts() {
+  version_ = cuts_.version();
+  parts_.clear(), regions_.clear(), due_at_.clear();
+  add_part(body_, nullptr);
+  if (cutbody::CutPatches* const patches = cuts_.patches(std::size_t(body_.organ)))
+    patches->for_each([&](cutbody::CutPatch& patch) { add_part(patch.body, &patch); });
+  due_at_.resize(regions_.size());
+  look_at_all();
 }
 
-void NearObstacle::add_part(surface::Body& body, cutbody::CutPatch* patch, std::array<std::int32_t, 2> order) {
+/// All is to be looked at.
+void NearObstacle::look_at_all() {
+  path_ = 0, always_.clear(), due_.clear();
+  for (std::size_t number = 0; number < regions_.size(); ++number) {
+    Region& region = regions_[number];
+    region.path = 0, region.round = 0, region.waiting.clear(), due_at_[number] = INFINITY;
+    due_.push_back({0, Kind::group, std::int32_t(number), region.group});
+  }
+}
+
+void NearObstacle::add_part(surface::Body& body, cutbody::CutPatch* patch) {
   const auto part = std::int32_t(parts_.size());
   const surface::NearSurface& surface = body.surface;
-  parts_.push_back({&body, patch, order, std::vector<std::int32_t>(surface.vertex_count(), -1)});
+  parts_.push_back({&body, patch, std::vector<std::int32_t>(surface.vertex_count(), -1)});
   std::vector<std::int32_t>& first_corner = parts_.back().first_corner;
   std::int32_t corner = 0;
   for (const surface::NearSurface::Triangle& triangle : surface.triangles())
@@ -66,27 +81,19 @@ void NearObstacle::add_part(surface::Body& body, cutbody::CutPatch* patch, std::
     }
   for (std::size_t group = 0; group < surface.groups().size(); ++group) {
     const surface::NearSurface::Bound& bound = surface.groups()[group];
-    Region region{part, {}};
+    Region& region = regions_.emplace_back(Region{part, std::int32_t(group)});
     surface.for_each_sphere(bound, [&](std::int32_t sphere) { region.sphere.push_back(sphere - organ_.first); });
-    due_.push_back({0, Kind::group, std::int32_t(regions_.size()), std::int32_t(group)});
+    region.seen.resize(region.sphere.size());
     // Of its patches and their vertices no more wait than it has corners.
     const auto triangles =
         surface.patches()[std::size_t(bound.last) - 1].last - surface.patches()[std::size_t(bound.first)].first;
-    add_region(std::move(region), std::size_t(3 * triangles));
+    region.waiting.reserve(std::size_t(3 * triangles));
   }
 }
 
-/// `most`: of it wait at a time.
-void NearObstacle::add_region(Region region, std::size_t most) {
-  region.seen.resize(region.sphere.size()), region.waiting.reserve(most);
-  regions_.push_back(std::move(region)), due_at_.push_back(INFINITY);
-}
-
-/// Adds to its path how far its spheres have moved. Before a plane only the way along its normal counts. Blocks have
-/// the path of all spheres: what turns in them may come nearer though no sphere does.
+/// Adds to its path how far its spheres have moved. Before a plane only the way along its normal counts.
 void NearObstacle::bring_up_to_date(Region& region) {
-  if (region.part < 0) region.path = path_;
-  if (region.part < 0 || region.round == round_) return;
+  if (region.round == round_) return;
   const Vec3* way = shape_.only_way();
   double farthest = 0;
   for (std::size_t i = 0; i < region.sphere.size(); ++i) {
@@ -112,15 +119,13 @@ void NearObstacle::take_due(std::size_t number) {
 void NearObstacle::schedule(std::size_t number) {
   const Region& region = regions_[number];
   const double due = region.waiting.front().due;
-  due_at_[number] = std::min(due_at_[number], region.part < 0 ? due : path_ + (due - region.path));
+  due_at_[number] = std::min(due_at_[number], path_ + (due - region.path));
 }
 
 void NearObstacle::look_at(Item item) {
   const std::int32_t part = regions_[std::size_t(item.region)].part;
-  if (part >= 0 && parts_[std::size_t(part)].patch != nullptr) cuts_.begin(*parts_[std::size_t(part)].patch);
+  if (parts_[std::size_t(part)].patch != nullptr) cuts_.begin(*parts_[std::size_t(part)].patch);
   switch (item.kind) {
-    case Kind::block:
-      return look_at_block(item);
     case Kind::group:
     case Kind::patch:
       return look_at_bound(item);
@@ -136,15 +141,6 @@ void NearObstacle::wait(Item item, double clearance, double stretch) {
   item.due = region.path + (clearance - kRounding) / stretch;
   region.waiting.push_back(item), std::push_heap(region.waiting.begin(), region.waiting.end());
   schedule(std::size_t(item.region));
-}
-
-void NearObstacle::look_at_block(Item item) {
-  cutbody::CutPatches& patches = *cuts_.patches(std::size_t(body_.organ));
-  const double clearance = shape_.clearance(patches.box_of(std::size_t(item.number)));
-  if (clearance > 0) return wait(item, clearance, cutbody::CutPatches::kStretch);
-  std::int32_t number = 0;
-  for (const auto& patch : patches.patches(std::size_t(item.number)))
-    add_part(patch->body, patch.get(), {item.number, number++});
 }
 
 /// Looks at a run of triangles or of patches by its box.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -13,7 +12,7 @@ namespace ctpm::contact {
 
 /// Which vertices of an organ and of its cuts are inside an obstacle. How far each was away is known from when it was
 /// looked at, and it is looked at again only when the spheres that it follows may have brought it so far: what is far
-/// or at rest costs nothing. Parts of surfaces are looked at by their boxes until these may be inside. When something
+/// or at rest costs nothing. Groups of triangles are looked at by their boxes until these may be inside. When something
 /// was looked at changes no result.
 class NearObstacle {
  public:
@@ -26,8 +25,7 @@ class NearObstacle {
   };
   struct Part {
     surface::Body* body;
-    cutbody::CutPatch* patch;  ///< null: the organ's own surface
-    std::array<std::int32_t, 2> order;
+    cutbody::CutPatch* patch;                ///< null: the organ's own surface
     std::vector<std::int32_t> first_corner;  ///< where each vertex first occurs in its triangles (vertex_count)
   };
 
@@ -41,7 +39,7 @@ class NearObstacle {
 
  private:
   /// Something that is outside as long as its region's path is shorter than `due`.
-  enum class Kind : std::uint8_t { block, group, patch, vertex };
+  enum class Kind : std::uint8_t { group, patch, vertex };
   struct Item {
     double due;  ///< [m]
     Kind kind;
@@ -49,24 +47,23 @@ class NearObstacle {
 
     bool operator<(const Item& other) const { return due > other.due; }  // the first due is on top of a heap
   };
-  /// A group of triangles of a part and the spheres that it follows, or all blocks of the cuts (part -1).
+  /// A group of triangles of a part, and the spheres that it follows.
   struct Region {
-    std::int32_t part;
-    std::vector<std::int32_t> sphere;  ///< within the organ
-    std::vector<Vec3> seen{};          ///< where they were when it was last brought up to date [m]
-    double path = 0;                   ///< sum of how far the farthest of them moved from one of these to the next [m]
-    std::uint32_t round = 0;           ///< in which it was last brought up to date; 0: it never was
-    std::vector<Item> waiting{};       ///< heap
+    std::int32_t part, group;
+    std::vector<std::int32_t> sphere{};  ///< within the organ
+    std::vector<Vec3> seen{};            ///< where they were when it was last brought up to date [m]
+    double path = 0;              ///< sum of how far the farthest of them moved from one of these to the next [m]
+    std::uint32_t round = 0;      ///< in which it was last brought up to date; 0: it never was
+    std::vector<Item> waiting{};  ///< heap
   };
 
-  void begin_anew();
-  void add_part(surface::Body& body, cutbody::CutPatch* patch, std::array<std::int32_t, 2> order);
-  void add_region(Region region, std::size_t most);
+  void find_parts();
+  void look_at_all();
+  void add_part(surface::Body& body, cutbody::CutPatch* patch);
   void bring_up_to_date(Region& region);
   void take_due(std::size_t region);
   void schedule(std::size_t region);
   void look_at(Item item);
-  void look_at_block(Item item);
   void look_at_bound(Item item);
   void look_at_vertex(Item item);
   void wait(Item item, double clearance, double stretch);

@@ -77,7 +77,7 @@ void NearTriangles::begin(Look& look, const Reach& reach, const Vec3Array& posit
   look.has_begun = true, look.version = cuts_.version(), look.reach = reach, look.position = position;
   look.parts.resize(whole_), look.found.clear(), look.slots = whole_slots_;
   look.part = look.group = 0, look.drift = 0;
-  look.stretch = cuts_.any() ? cutbody::CutPatches::kStretch : 1;
+  look.stretch = cuts_.stretch();
   for (const BallPart& part : look.parts) look.stretch = std::max(look.stretch, part.surface->stretch());
   cuts_.near(reach.grown(kRounding), [&](cutbody::CutPatch& patch) {
     look.parts.push_back({look.slots, cuts_.first_point(kind_, patch), &patch.body.surface, &patch.gathering, &patch});

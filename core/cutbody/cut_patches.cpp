@@ -18,12 +18,8 @@ namespace {
 
 using Triangle = std::array<std::int32_t, 3>;
 
-/// Bins of so many blocks along each axis: what is in one follows spheres in the bins around it (our choice; bindings
-/// reach two blocks, or three where two do not span space).
+/// Bins of spheres are so many blocks along each axis (our choice: small ones bound patches better, large ones faster).
 constexpr CutGrid::Index kPerBin = 3;
-
-/// At rest, vertices lie at most so many steps of the grid outside their block: walls are put onto the swept surface.
-constexpr double kMargin = 2;
 
 /// Vertices of two walls are opposite if they are nearer than this at rest, in steps of the grid, and face each other.
 constexpr double kSamePlace = 0.35, kFacing = -0.3;
@@ -104,20 +100,33 @@ double CutPatch::opening(std::int32_t vertex) {
 }
 
 struct CutPatches::Parts {
-  Parts(const Model& model, std::size_t organ) : grid(model, organ), binding(model, grid) {
-    const OrganRange& range = model.organs[organ];
-    for (std::int32_t s = 0; s < range.count; ++s) {
+  /// What a thread that makes patches binds them with.
+  struct Binder {
+    std::optional<SideBinding> binding;     ///< once it was needed
+    std::vector<CutGrid::NodeBox> changed;  ///< what it has not been told of
+
+    SideBinding& up_to_date(const Model& model, const CutGrid& grid) {
+      if (!binding) binding.emplace(model, grid), changed.clear();
+      for (const CutGrid::NodeBox& box : std::exchange(changed, {})) binding->update(box);
+      return *binding;
+    }
+  };
+
+  Parts(const Model& model, std::size_t organ) : grid(model, organ) {
+    const CutGrid::Node bins = bins_of(grid);
+    by_bin.resize(std::size_t(bins[0] * bins[1] * bins[2] + 1));
+    for (std::int32_t s = 0; s < model.organs[organ].count; ++s) {
       const Index node = grid.node_of_sphere(s);
-      bin_of_sphere.push_back(node < 0 ? -1 : bin_of(grid, grid.node(node)));
+      bin_of_sphere.push_back(node < 0 ? Index(by_bin.size()) - 1 : bin_of(grid, grid.node(node)));
+      by_bin[std::size_t(bin_of_sphere.back())].push_back(s);
     }
   }
 
   CutGrid grid;
-  SideBinding binding;                          ///< of who asks for patches
-  std::optional<SideBinding> ahead;             ///< of make_all(), once it was called
-  std::vector<CutGrid::NodeBox> ahead_changed;  ///< what `ahead` has not been told of
+  Binder ahead, asked;  ///< of make_all(), and of who asks for patches
   std::vector<Index> bin_of_sphere;
-  std::shared_ptr<const State> seen;  ///< what is followed
+  std::vector<std::vector<Index>> by_bin;  ///< the spheres in each bin; in the last those that are in no tissue
+  std::shared_ptr<const State> seen;       ///< what is followed
 };
 
 CutPatches::CutPatches(const Model& model, std::size_t organ, StageWatch* watch)
@@ -126,36 +135,65 @@ CutPatches::~CutPatches() = default;
 CutPatches::CutPatches(CutPatches&&) noexcept = default;
 
 void CutPatches::prepare() {
-  if (!parts_) parts_ = std::make_unique<Parts>(model_, organ_);
+  if (parts_) return;
+  parts_ = std::make_unique<Parts>(model_, organ_);
+  for (Parts::Binder* binder : {&parts_->ahead, &parts_->asked}) (void)binder->up_to_date(model_, parts_->grid);
 }
 
 void CutPatches::follow(std::shared_ptr<const State> state) {
   const bool was_followed = parts_ && parts_->seen;
   if (cutting::sweeps_same(was_followed ? *parts_->seen : State{}, *state, std::int32_t(organ_))) {
-    if (was_followed) parts_->binding.forget();
-    if (was_followed && parts_->ahead) parts_->ahead->forget();
+    if (was_followed)
+      for (Parts::Binder* binder : {&parts_->ahead, &parts_->asked})
+        if (binder->binding) binder->binding->forget();
     return;
   }
-  prepare();
-  parts_->seen = std::move(state);
-  (void)parts_->grid.update(*parts_->seen);
-  const CutGrid::NodeBox changed = parts_->grid.take_changed();
-  parts_->binding.update(changed), parts_->ahead_changed.push_back(changed);
-  cover();
+  if (!parts_) parts_ = std::make_unique<Parts>(model_, organ_);
+  try {
+    parts_->seen = std::move(state);
+    (void)parts_->grid.update(*parts_->seen);
+    const CutGrid::NodeBox changed = parts_->grid.take_changed();
+    for (Parts::Binder* binder : {&parts_->ahead, &parts_->asked}) binder->changed.push_back(changed);
+    cover();
+  } catch (...) {
+    parts_.reset(), covered_.clear();  // they may be half done
+    throw;
+  }
 }
 
 void CutPatches::make_all(const std::stop_token& stop) {
   if (!is_cut() || stop.stop_requested()) return;
-  std::optional<SideBinding>& ahead = parts_->ahead;
+  Parts::Binder& binder = parts_->ahead;
   try {
-    if (!ahead) ahead.emplace(model_, parts_->grid), parts_->ahead_changed.clear();
-    for (const CutGrid::NodeBox& changed : std::exchange(parts_->ahead_changed, {})) ahead->update(changed);
+    SideBinding& binding = binder.up_to_date(model_, parts_->grid);
     for (Covered& covered : covered_)
-      if (!stop.stop_requested()) (void)make_once(covered, *ahead);
+      if (!stop.stop_requested()) (void)make_once(covered, binding);
   } catch (...) {
-    ahead.reset();  // it may be half done
+    binder.binding.reset();  // it may be half done
     throw;
   }
+}
+
+/// Makes all patches that are not made yet, from the other end than make_all(): what both bind lies between two blocks.
+void CutPatches::make_rest() {
+  if (are_made_) return;
+  const InStage stage(watch_, Stage::cut_surface);
+  const auto is_made = [](Covered& covered) {
+    return std::atomic_ref(covered.making).load(std::memory_order_acquire) == Making::done;
+  };
+  Parts::Binder& binder = parts_->asked;
+  try {
+    for (auto covered = covered_.rbegin(); covered != covered_.rend(); ++covered)
+      if (!is_made(*covered)) (void)make_once(*covered, binder.up_to_date(model_, parts_->grid));
+    for (Covered& covered : covered_)
+      while (!is_made(covered) && !make_once(covered, binder.up_to_date(model_, parts_->grid)))
+        std::atomic_ref(covered.making).wait(Making::now, std::memory_order_acquire);
+  } catch (...) {
+    binder.binding.reset();  // it may be half done
+    throw;
+  }
+  find_bins();
+  are_made_ = true;
 }
 
 /// Makes the patches of a block. Returns whether they are made; else another thread makes them now.
@@ -175,7 +213,7 @@ bool CutPatches::make_once(Covered& covered, SideBinding& binding) {
 
 void CutPatches::cover() {
   const CutGrid& grid = parts_->grid;
-  covered_.clear(), index_of_.clear(), piece_.clear(), piece_of_sphere_.clear(), has_pieces_ = false;
+  covered_.clear(), index_of_.clear(), piece_.clear(), piece_of_sphere_.clear(), has_pieces_ = are_made_ = false;
   if (!grid.anything_cut()) return;
   piece_ = grid.find_pieces();
   for (std::int32_t s = 0; s < model_.organs[organ_].count; ++s) {
@@ -188,19 +226,8 @@ void CutPatches::cover() {
   index_of_.assign(blocks.size(), -1);
   for (Index block = 0; block < grid.block_count(); ++block) {
     if (!blocks[std::size_t(block)]) continue;
-    const CutGrid::Node low = grid.first_node(block);
-    CutGrid::Node high = low;
-    for (std::size_t a = 0; a < 3; ++a) high[a] += CutGrid::kPerSpacing;
-    // The lattice may be turned in the scene.
-    const Vec3 x = grid.place({high[0], low[1], low[2]}) - grid.place(low),
-               y = grid.place({low[0], high[1], low[2]}) - grid.place(low),
-               z = grid.place({low[0], low[1], high[2]}) - grid.place(low), at = grid.place(low);
-    const Box rest = Box(at, at + x, at + y, at + z, at + x + y, at + x + z, at + y + z, at + x + y + z)
-                         .grown(kMargin * grid.step());
-    if (covered_.empty()) all_ = rest;
-    all_.add(rest.low), all_.add(rest.high);
     index_of_[std::size_t(block)] = Index(covered_.size());
-    covered_.push_back({block, bin_of(grid, low), rest});
+    covered_.push_back({block});
   }
 }
 
@@ -212,57 +239,76 @@ bool CutPatches::covers(Vec3 rest) const {
 
 void CutPatches::begin(const Vec3Array& position) { position_ = &position, ++round_; }
 
-/// Finds for each bin within what range the spheres in it and in those around it have moved.
-void CutPatches::find_displacements() {
-  const CutGrid::Node bins = bins_of(parts_->grid);
-  ranges_.assign(std::size_t(bins[0]) * std::size_t(bins[1]) * std::size_t(bins[2]), {});
-  const OrganRange& organ = model_.organs[organ_];
-  Range all;
-  for (std::int32_t s = 0; s < organ.count; ++s) {
-    const auto i = std::size_t(organ.first + s);
-    const Vec3 by = (*position_)[i] - model_.rest_position[i];
-    all.add(by);
-    if (const Index bin = parts_->bin_of_sphere[std::size_t(s)]; bin >= 0) ranges_[std::size_t(bin)].add(by);
-  }
-  const auto widened = [](const Range& range) {
-    const Vec3 margin = kWiden * (range.box.high - range.box.low);
-    return Box(range.box.low - margin, range.box.high + margin);
-  };
-  all_displacements_ = widened(all);
-  displacements_.clear();
-  for (Index k = 0; k < bins[2]; ++k)
-    for (Index j = 0; j < bins[1]; ++j)
-      for (Index i = 0; i < bins[0]; ++i) {
-        Range around;
-        for (Index z = std::max(0, k - 1); z <= std::min(bins[2] - 1, k + 1); ++z)
-          for (Index y = std::max(0, j - 1); y <= std::min(bins[1] - 1, j + 1); ++y)
-            for (Index x = std::max(0, i - 1); x <= std::min(bins[0] - 1, i + 1); ++x)
-              around.add(ranges_[std::size_t(x + bins[0] * (y + bins[1] * z))]);
-        displacements_.push_back(around.any ? widened(around) : all_displacements_);
-      }
+double CutPatches::stretch() {
+  if (is_cut()) make_rest();
+  return is_cut() ? stretch_ : 1;
+}
+
+/// Finds the bins of the spheres that each patch follows.
+void CutPatches::find_bins() {
+  bounded_.clear(), bins_of_patches_.clear(), stretch_ = 1, found_in_ = 0;
+  const auto first_sphere = model_.organs[organ_].first;
+  std::vector<Index> seen(parts_->by_bin.size(), -1);  // the last patch that followed a sphere in it
+  for (Covered& covered : covered_)
+    for (const auto& patch : covered.patches) {
+      const surface::NearSurface& surface = patch->body.surface;
+      if (surface.empty()) continue;
+      Bounded bounded{patch.get(), bins_of_patches_.size(), 0};
+      for (const surface::NearSurface::Bound& group : surface.groups())
+        surface.for_each_sphere(group, [&](std::int32_t sphere) {
+          const Index bin = parts_->bin_of_sphere[std::size_t(sphere - first_sphere)];
+          if (std::exchange(seen[std::size_t(bin)], Index(bounded_.size())) != Index(bounded_.size()))
+            bins_of_patches_.push_back(bin);
+        });
+      bounded.last_bin = bins_of_patches_.size();
+      bounded_.push_back(bounded);
+      stretch_ = std::max(stretch_, surface.stretch());
+    }
+}
+
+/// Finds within what boxes the patches are: a patch moves within the range of the spheres that it follows.
+void CutPatches::find_boxes() {
   found_in_ = round_;
+  const auto moved = [&](Index sphere) {
+    const auto i = std::size_t(model_.organs[organ_].first + sphere);
+    return (*position_)[i] - model_.rest_position[i];
+  };
+  ranges_.resize(parts_->by_bin.size(), Box{Vec3{}});
+  for (std::size_t bin = 0; bin < ranges_.size(); ++bin) {
+    const std::vector<Index>& spheres = parts_->by_bin[bin];
+    if (!spheres.empty()) ranges_[bin] = Box(moved(spheres.front()));
+    for (const Index sphere : spheres) ranges_[bin].add(moved(sphere));
+  }
+  for (Bounded& bounded : bounded_) {
+    Box range = ranges_[std::size_t(bins_of_patches_[bounded.first_bin])];
+    for (std::size_t b = bounded.first_bin + 1; b < bounded.last_bin; ++b) {
+      const Box& other = ranges_[std::size_t(bins_of_patches_[b])];
+      range.add(other.low), range.add(other.high);
+    }
+    const surface::NearSurface& surface = bounded.patch->body.surface;
+    bounded.box = surface.rest_box().moved(surface.displacements_within(range));
+    if (&bounded == &bounded_.front()) all_ = bounded.box;
+    all_.add(bounded.box.low), all_.add(bounded.box.high);
+  }
 }
 
 CutPatch* CutPatches::patch(Index block, std::int32_t vertex) {
   if (!is_cut() || block < 0 || std::size_t(block) >= index_of_.size()) return nullptr;
   const Index index = index_of_[std::size_t(block)];
   if (index < 0) return nullptr;
-  for (const auto& patch : made(covered_[std::size_t(index)])) {
+  make_rest();
+  Covered& covered = covered_[std::size_t(index)];
+  begin(covered);
+  for (const auto& patch : covered.patches) {
     const std::int32_t own = vertex - patch->body.first_vertex;
     if (own >= 0 && std::size_t(own) < patch->body.surface.vertex_count()) return patch.get();
   }
   return nullptr;
 }
 
-std::vector<std::unique_ptr<CutPatch>>& CutPatches::made(Covered& covered) {
-  const std::atomic_ref making(covered.making);
-  if (making.load(std::memory_order_acquire) != Making::done) {
-    const InStage stage(watch_, Stage::cut_surface);
-    while (!make_once(covered, parts_->binding)) making.wait(Making::now, std::memory_order_acquire);
-  }
-  if (std::exchange(covered.round, round_) != round_)
-    for (const auto& patch : covered.patches) patch->body.surface.begin(*position_);
-  return covered.patches;
+void CutPatches::begin(Covered& covered) {
+  if (std::exchange(covered.round, round_) == round_) return;
+  for (const auto& patch : covered.patches) patch->body.surface.begin(*position_);
 }
 
 /// The surface in a block. What is at its border is as in the blocks around it.

@@ -197,8 +197,10 @@ void NearSurface::find_moved() const {
   for (std::size_t i = 0; i < spheres_.size(); ++i) moved_[i] = position_[i] - sphere_rest_[std::size_t(spheres_[i])];
   Box range(moved_.front());
   for (const Vec3& by : moved_) range.add(by);
-  displacements_ = widened(range, widen_, most_turned_);
+  displacements_ = displacements_within(range);
 }
+
+Box NearSurface::displacements_within(const Box& range) const { return widened(range, widen_, most_turned_); }
 
 const Box& NearSurface::displacements() const {
   find_moved();

@@ -89,6 +89,8 @@ class NearSurface {
   /// Displacements from rest within which those of all vertices lie, or those of a patch or group [m].
   const Box& displacements() const;
   Box displacements(const Bound& bound) const;
+  /// Those of all vertices while those of the spheres that they follow lie within `range` [m].
+  Box displacements_within(const Box& range) const;
   /// Calls `visit(sphere)` for the Model's spheres by which the vertices of a patch or group move, but for what turns.
   template <class Visit>
   void for_each_sphere(const Bound& bound, Visit&& visit) const {

@@ -281,6 +281,11 @@ inline constexpr GoldenRow kGoldenRevision19[] = {
     {"crumbs, auto", {0x03283a5938717dbc, 0xc765e32a43836add, 0x2ccc8f73db031fc8, 0xfa42f56e05aa4a3a}},
 };
 
+inline constexpr GoldenRow kGoldenRevision20[] = {
+    {"long strip, auto", {0xc3ccc9ebd4337fbc, 0x2e6ae804277ed0e6, 0xbe4319aa63664aa3, 0xc7e065600d43e4f3}},
+    {"long strip, sdirk2", {0xb5f19139939278c6, 0x654ac779d07b4bbc, 0x30476eec26064ff4, 0x8f54021146c42de3}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},   {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189},   {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
@@ -291,7 +296,7 @@ inline constexpr GoldenRevision kGoldenRevisions[] = {
     {13, kGoldenRevision13, 0xa5637b24229bb1f2}, {14, kGoldenRevision14, 0x463cb460f23844de},
     {15, kGoldenRevision15, 0xc7644e74b0d461e5}, {16, kGoldenRevision16, 0x304838863b606220},
     {17, kGoldenRevision17, 0x47d495b0831911b},  {18, kGoldenRevision18, 0x519dbe9952522cb},
-    {19, kGoldenRevision19, 0xbcff56bc1d9b0f37},
+    {19, kGoldenRevision19, 0xbcff56bc1d9b0f37}, {20, kGoldenRevision20, 0x7421423541d8b05b},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

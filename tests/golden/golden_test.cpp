@@ -98,6 +98,12 @@ constexpr BlockSession kSkinnedSessions[] = {
     {"fine mesh, sdirk2", false, Integrator::sdirk2, 1, testing::golden_inputs, 0.001},
 };
 
+/// Of make_strip_model().
+constexpr Session kStripSessions[] = {
+    {"long strip, auto", network::Structure::ctpm, std::nullopt, testing::strip_inputs},
+    {"long strip, sdirk2", network::Structure::ctpm, Integrator::sdirk2, testing::strip_inputs},
+};
+
 std::string to_text(const std::array<std::uint64_t, 4>& hash) {
   char text[128];
   std::snprintf(text, sizeof text, "{0x%016llx, 0x%016llx, 0x%016llx, 0x%016llx}", (unsigned long long)hash[0],
@@ -177,6 +183,14 @@ TEST_P(GoldenTouched, SurfaceGivesTheSameBitsInEveryBuild) {
   expect_row(testing::run_golden(testing::make_skinned_model(6, 5, 5, session.is_soft, session.hands, session.edge),
                                  400, session.integrator, {}, session.inputs),
              *row);
+}
+
+TEST(Golden, AStripThatFollowsItsFarEndGivesTheSameBitsInEveryBuild) {
+  for (const Session& session : kStripSessions) {
+    const GoldenRow* row = find_row(session.name);
+    ASSERT_NE(row, nullptr) << session.name;
+    expect_row(testing::run_golden(testing::make_strip_model(), 400, session.integrator, {}, session.inputs), *row);
+  }
 }
 
 /// "skinned_auto" for "skinned, auto".

@@ -18,7 +18,7 @@ struct Session {
   bool has_surface = false;
   std::int32_t hands = 1;
   Inputs (*inputs)(int) = testing::golden_inputs;
-  bool is_light = false, is_full = false;
+  bool is_light = false, is_full = false, is_strip = false;
 };
 
 constexpr Session kSessions[] = {
@@ -49,6 +49,8 @@ constexpr Session kSessions[] = {
      true},
     {"light", 6, 5, 5, 400, network::Structure::ctpm, Integrator::backward_euler, false, false, 1,
      testing::golden_inputs, true},
+    {"long strip", 4, 14, 3, 400, network::Structure::ctpm, std::nullopt, false, true, 1, testing::strip_inputs, false,
+     false, true},
 };
 
 }  // namespace
@@ -57,6 +59,9 @@ int main() {
   bool all_equal = true;
   for (const Session& session : kSessions) {
     const auto run = [&](const stepping::StepperOptions& options) {
+      if (session.is_strip)
+        return testing::run_golden(testing::make_strip_model(), session.ticks, session.integrator, options,
+                                   session.inputs);
       if (session.has_surface)
         return testing::run_golden(
             testing::make_skinned_model(session.ni, session.nj, session.nk, false, session.hands), session.ticks,

@@ -101,6 +101,18 @@ inline Inputs crumbs_inputs(int tick) {
   return inputs;
 }
 
+/// A scalpel cuts along y and then aside, for 100 ticks to the left and for 100 to the right: see make_strip_model().
+/// Later a ball is in the way of what rises.
+inline Inputs strip_inputs(int tick) {
+  Inputs inputs;
+  if (tick >= 300) inputs.tool = 0, inputs.position = {0.012, 0.06, 0.2};
+  if (tick >= 200) return inputs;
+  const double side = tick < 100 ? -1 : 1, along = -0.09 + 0.002 * (tick % 100);
+  inputs.tool = 1;
+  inputs.position = {side * 0.0009 + 0.0002 + side * 0.9 * std::max(0.0, along - 0.036), std::min(along, 0.036), -0.01};
+  return inputs;
+}
+
 /// Results of a golden session.
 struct GoldenRun {
   std::array<std::uint64_t, 4> hash{};  ///< of State after each quarter
@@ -152,6 +164,21 @@ inline Model make_skinned_model(int ni, int nj, int nk, bool is_soft, std::int32
   if (is_soft) material.viscosity = 5e3, material.stiffness_scale = 0.29;
   Model model = make_skinned_block(ni, nj, nk, network::Structure::ctpm, edge, material, network::Tiling::two_spheres);
   model.tools = {ball(0.006), scalpel(0.06)}, model.hands = hands;
+  return model;
+}
+
+/// A block in which strip_inputs() cut a strip a seventh of a spacing thick, which no sphere is in. All that is beside
+/// it is held; the end that it hangs on rises, and so it comes under an obstacle that is far from that.
+inline Model make_strip_model() {
+  Model model = make_skinned_model(4, 14, 3, false);
+  model.obstacles = {{"above", ObstacleKind::box, {0, -0.04, 0.05}, {1, 0, 0, 0}, {0.01, 0.04, 0.01}}};
+  for (std::size_t i = 0; i < model.sphere_count(); ++i) {
+    model.held_axes[i] = model.rest_position[i].y < 0.036 ? kAnchored : 0;
+    if (model.held_axes[i] == kAnchored) continue;
+    model.loads.sphere.push_back(std::int32_t(i));
+    model.loads.force.push_back(model.mass[i] * Vec3{0, 0, 40});
+    model.loads.start.push_back(0.2), model.loads.ramp.push_back(0);
+  }
   return model;
 }
 

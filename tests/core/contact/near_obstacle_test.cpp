@@ -111,8 +111,9 @@ State thin_strip(const Model& model) {
 
 Model block() { return testing::block_to_cut(6, 6, 4, 0.008); }
 
-Obstacle above(ObstacleKind kind, Vec3 half = {}) {
-  return {"above", kind, {0, 0, kTop + half.z}, {0, 1, 0, 0}, half};  // upside down: it fills what is above
+/// `gap`: between it and the block at rest [m].
+Obstacle above(ObstacleKind kind, Vec3 half = {}, double gap = 0) {
+  return {"above", kind, {0, 0, kTop + gap + half.z}, {0, 1, 0, 0}, half};  // upside down: it fills what is above
 }
 
 TEST(FarthestMoved, IsInfinitelyFarWhereAnyPlaceIsNotFinite) {
@@ -150,6 +151,23 @@ TEST(NearObstacle, FindsThoseOfAPartThatMovesWhileAllElseRests) {
   const auto is_at_end = [](Vec3 rest) { return rest.x > 0.02; };
   for (const ObstacleKind kind : {ObstacleKind::plane, ObstacleKind::box})
     expect_all_found(model, above(kind, {0.02, 0.03, 0.01}), testing::half_cut(model, 0.012), 0, is_at_end);
+}
+
+TEST(NearObstacle, FindsThoseOfALongThinStripWhoseFarEndMoves) {
+  const Model model = testing::block_to_cut(4, 20, 4, 0.008);
+  constexpr double kEnd = 0.066;  // of the cuts: spheres beyond it are the nearest along the strip
+  State state = rest_state(model);
+  for (const double x : {-0.0007, 0.0011})
+    testing::cut_along(
+        model,
+        [&](double t) {
+          const double y = -0.15 + t * (0.15 + kEnd);
+          return testing::straight_front({x, y, -0.02}, {x, y, 0.06});
+        },
+        state);
+  for (const ObstacleKind kind : {ObstacleKind::plane, ObstacleKind::box})
+    expect_all_found(model, above(kind, {0.02, 0.15, 0.01}, 0.02), state, 0,
+                     [&](Vec3 rest) { return rest.y > kEnd - 0.016; });
 }
 
 }  // namespace

@@ -299,7 +299,7 @@ TEST_F(ImportProgram, SeveralLabelsOfAMapAreOrgansOfOneScene) {
   EXPECT_EQ(ctpm({"check", "scene.json"}).code, 0);
 }
 
-TEST_F(ImportProgram, MoreHertzAreFewerSpheres) {
+TEST_F(ImportProgram, SlowMoreHertzAreFewerSpheres) {
   write("bean.obj", zoo::to_obj_text(bean(1, 3)));
   const auto spheres_for = [&](const std::string& khz) {
     const auto outcome =

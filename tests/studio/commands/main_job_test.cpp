@@ -75,7 +75,7 @@ TEST(MainJob, GoesFromTheShippedKidneyToAVideo) {
   do_main_job(folder, std::string(CTPM_SOURCE_DIR) + "/scenes/organs/kidney.obj", {"--radius-mm", "5"});
 }
 
-TEST(MainJob, GoesFromAScannedLiverInCentimetresToAVideo) {
+TEST(MainJob, SlowGoesFromAScannedLiverInCentimetresToAVideo) {
   const fs::path mesh = fs::path(CTPM_SOURCE_DIR) / "../shared/meshes/liver-smooth.obj";
   if (!fs::exists(mesh)) GTEST_SKIP() << mesh << " is not there";
   const TemporaryFolder folder;

@@ -105,7 +105,7 @@ TEST(Paper, TheRigCreepsAsEquation10IntoOneOfTheTwoMeasuredRanges) {
   EXPECT_EQ(ranges, 2);
 }
 
-TEST(Paper, UnderAForceCtpmSwingsLessThanMassSpringAndDoesNotTurnRoundLessOften) {
+TEST(Paper, SlowUnderAForceCtpmSwingsLessThanMassSpringAndDoesNotTurnRoundLessOften) {
   const Result<paper::Experiment> experiment = paper::run_load(kScenes, false);
   expect_met(experiment, 0);
   const std::vector<reports::Table>& tables = experiment->section.tables;
@@ -241,7 +241,7 @@ TEST(Paper, AModelThatMovesByRoundingAloneIsAtRest) {
   EXPECT_NEAR(*way, 0, 1e-15);
 }
 
-TEST(Paper, WhatTensionDoesToTheUnloadedLiverIsNoSag) {
+TEST(Paper, SlowWhatTensionDoesToTheUnloadedLiverIsNoSag) {
   Result<loading::LoadedScene> scene = loading::load_whole_scene(kScenes + "/liver.json");
   ASSERT_TRUE(scene) << to_string(scene.errors().front());
   scenes::OrganSpec& organ = scene->scene.spec.organs[0];
