@@ -174,14 +174,6 @@ void CutSurfaces::begin(const Vec3Array& position) {
     if (organ) organ->begin(position);
 }
 
-double CutSurfaces::stretch() {
-  double stretch = 1;
-  if (is_cut_)
-    for (auto& organ : organs_)
-      if (organ) stretch = std::max(stretch, organ->stretch());
-  return stretch;
-}
-
 cutbody::CutPatch* CutSurfaces::patch(const cutbody::CutPoints::Place& place) {
   return organs_[place.organ] ? organs_[place.organ]->patch(place.block, place.vertex) : nullptr;
 }

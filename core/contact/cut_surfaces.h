@@ -81,8 +81,13 @@ class CutSurfaces {
   void near(std::size_t organ, const Region& region, Visit&& visit) {
     if (is_cut_ && organs_[organ]) organs_[organ]->near(region, visit);
   }
-  /// A vertex of a patch moves at most so many times as far as the farthest sphere.
-  double stretch();
+  /// Calls `visit(patch)` for all patches, in the same order; the round has not begun for them.
+  template <class Visit>
+  void for_each(Visit&& visit) {
+    if (!is_cut_) return;
+    for (auto& organ : organs_)
+      if (organ) organ->for_each(visit);
+  }
   /// The patches of an organ; null: nothing of it is cut that is touched.
   cutbody::CutPatches* patches(std::size_t organ) {
     return is_cut_ && organs_[organ] && organs_[organ]->is_cut() ? &*organs_[organ] : nullptr;

@@ -1,6 +1,8 @@
 #include "core/contact/near_triangles.h"
 
-#include <limits>
+#include <algorithm>
+#include <cmath>
+#include <span>
 #include <utility>
 
 #include "core/contact/moved.h"
@@ -8,12 +10,14 @@
 namespace ctpm::contact {
 namespace {
 
-/// The next look begins when this part of the margin is left (our choice).
-constexpr double kLeft = 0.5;
+/// Groups are looked at before they must when this part of the margin is used up (our choice).
+constexpr double kUsed = 0.5;
 
-/// So many triangles are visited in a round, where a group that is left out counts as kGroupCosts (our choice: a
-/// tenth of a millisecond).
-constexpr std::size_t kMostAtOnce = 384, kGroupCosts = 4;
+/// Of them so many triangles are visited in a round (our choice: some hundredths of a millisecond).
+constexpr std::size_t kMostAtOnce = 384;
+
+/// All is looked at anew from here on: beside a longer path the ways of a tick would be lost in rounding [m].
+constexpr double kLongestPath = 1e3;
 
 }  // namespace
 
@@ -23,90 +27,127 @@ Reach Reach::grown(double by) const {
   return wider;
 }
 
-bool Reach::contains(const Reach& other) const {
-  const auto is_in = [](double low, double high, double from, double to) { return low <= from && to <= high; };
-  return is_in(box.low.x, box.high.x, other.box.low.x, other.box.high.x) &&
-         is_in(box.low.y, box.high.y, other.box.low.y, other.box.high.y) &&
-         is_in(box.low.z, box.high.z, other.box.low.z, other.box.high.z) &&
-         norm(other.centre - centre) + other.farthest <= farthest;
+double Reach::beyond(const Reach& other) const {
+  const Vec3 low = other.box.low - box.low, high = box.high - other.box.high;
+  const double far = std::isinf(other.farthest) ? 0 : norm(centre - other.centre) + farthest - other.farthest;
+  return std::max({0.0, low.x, low.y, low.z, high.x, high.y, high.z, far});
+}
+
+double Reach::clearance(const Box& other) const {
+  const Vec3 below = other.low - box.high, above = box.low - other.high;
+  return std::max({below.x, below.y, below.z, above.x, above.y, above.z, gap(other, Box(centre)) - farthest});
 }
 
 NearTriangles::NearTriangles(const std::vector<BallPart>& whole, std::int32_t slots, CutSurfaces& cuts,
                              std::int32_t kind)
-    : cuts_(cuts), kind_(kind), whole_(whole.size()), whole_slots_(slots) {
+    : cuts_(cuts), kind_(kind), whole_(whole.size()), whole_slots_(slots), all_(whole) {
+  // As long as nothing is cut, ticks take no memory.
   std::size_t triangles = 0;
   for (const BallPart& part : whole) triangles += part.surface->triangles().size();
-  for (Look* look : {&used_, &next_}) look->parts = whole, look->slots = slots, look->found.reserve(triangles);
+  found_.reserve(triangles), parts_.reserve(whole_);
+  find_groups();
 }
 
-/// Whether nothing that `now` may meet is missing, after the farthest sphere has `moved` so far since the look began
-/// [m]. What was left out in a later round was farther away then by up to the drift.
-bool NearTriangles::Look::holds(const Reach& now, double moved) const {
-  return reach.contains(now.grown(stretch * (moved + drift)));
+/// Begins with the parts that there are.
+void NearTriangles::find_groups() {
+  version_ = cuts_.version(), has_begun_ = false;
+  all_.resize(whole_), groups_.clear(), stretch_ = 1;
+  if (cuts_.any())
+    cuts_.for_each([&](cutbody::CutPatch& patch) {
+      all_.push_back({0, cuts_.first_point(kind_, patch), &patch.body.surface, &patch.gathering, &patch});
+    });
+  for (std::size_t part = 0; part < all_.size(); ++part) {
+    const surface::NearSurface& surface = *all_[part].surface;
+    stretch_ = std::max(stretch_, surface.stretch());
+    for (std::size_t number = 0; number < surface.groups().size(); ++number) {
+      Group& group = groups_.emplace_back(Group{part, number});
+      const surface::NearSurface::Bound& bound = surface.groups()[number];
+      surface.for_each_sphere(bound, [&](std::int32_t sphere) { group.sphere.push_back(sphere); });
+      group.seen.resize(group.sphere.size());
+      group.found.reserve(std::size_t(surface.patches()[std::size_t(bound.last) - 1].last -
+                                      surface.patches()[std::size_t(bound.first)].first));
+    }
+  }
 }
 
 void NearTriangles::find(const Reach& reach, double margin, const Vec3Array& position) {
-  const auto may_use = [&](Look& look) {
-    return look.has_begun && look.version == cuts_.version() && look.position.size() == position.size();
-  };
-  // Whichever goes on later takes no memory then.
-  for (Look* look : {&used_, &next_})
-    if (!look->has_begun && look->position.size() != position.size()) look->position = position;
-  const Reach wider = reach.grown(margin);
-  if (!may_use(next_)) next_.has_begun = false;
-  const double moved = may_use(used_) ? farthest_moved(used_.position, position) : 0;
-  if (may_use(used_) && used_.holds(reach, moved)) {
-    begin_round(used_);
-    if (!next_.has_begun && !used_.holds(reach.grown(kLeft * margin), moved)) begin(next_, wider, position);
-    if (!next_.has_begun) return;
-    begin_round(next_);
-    go_on(next_, position, kMostAtOnce);
-    if (!next_.is_done()) return;
-  } else if (next_.has_begun) {
-    begin_round(next_);
-    go_on(next_, position, std::numeric_limits<std::size_t>::max());
+  if (version_ != cuts_.version()) find_groups();
+  follow(reach, position);
+  bool is_new = false;
+  std::size_t visited = 0;
+  for (Group& group : groups_) {
+    // How far all have come bounds how far its own spheres have.
+    const double most = group.used + (all_path_ - group.all_path),
+                 enough = group.found.empty() ? group.allowed : kUsed * group.allowed;
+    if (most + kRounding < enough) continue;
+    const double used = find_used(group) + kRounding;
+    const bool may_wait = used < group.allowed;
+    if (may_wait && (used < enough || visited >= kMostAtOnce)) continue;
+    const std::size_t triangles = look_at(group, reach, margin);
+    if (may_wait) visited += triangles;
+    is_new = true;
   }
-  if (!next_.has_begun || !next_.holds(reach, farthest_moved(next_.position, position))) {
-    begin(next_, wider, position);
-    go_on(next_, position, std::numeric_limits<std::size_t>::max());
-  }
-  std::swap(used_, next_), next_.has_begun = false;
+  if (is_new) list();
+  for (const BallPart& part : std::span(parts_).subspan(whole_)) cuts_.begin(*part.patch);
 }
 
-void NearTriangles::begin(Look& look, const Reach& reach, const Vec3Array& position) {
-  look.has_begun = true, look.version = cuts_.version(), look.reach = reach, look.position = position;
-  look.parts.resize(whole_), look.found.clear(), look.slots = whole_slots_;
-  look.part = look.group = 0, look.drift = 0;
-  look.stretch = cuts_.stretch();
-  for (const BallPart& part : look.parts) look.stretch = std::max(look.stretch, part.surface->stretch());
-  cuts_.near(reach.grown(kRounding), [&](cutbody::CutPatch& patch) {
-    look.parts.push_back({look.slots, cuts_.first_point(kind_, patch), &patch.body.surface, &patch.gathering, &patch});
-    look.slots += look.parts.back().slots();
+/// Adds to the paths how far the ball and the spheres have come since the last round.
+void NearTriangles::follow(const Reach& reach, const Vec3Array& position) {
+  const double by = reach.beyond(reach_);
+  if (has_begun_) ball_path_ += by, all_path_ += by + stretch_ * farthest_moved(position_, position);
+  reach_ = reach, position_ = position;
+  if (has_begun_ && all_path_ < kLongestPath) return;
+  has_begun_ = true, ball_path_ = all_path_ = 0;
+  for (Group& group : groups_) group.allowed = -1, group.used = group.ball_path = group.all_path = 0;
+}
+
+/// Brings up to date how much of what is allowed a group has used.
+double NearTriangles::find_used(Group& group) {
+  double farthest = 0;
+  for (std::size_t i = 0; i < group.sphere.size(); ++i) {
+    const Vec3 now = position_[std::size_t(group.sphere[i])];
+    farthest = std::max(farthest, norm(now - std::exchange(group.seen[i], now)));
+  }
+  const double stretch = 1 + 2 * all_[group.part].surface->groups()[group.number].widen;
+  group.used += ball_path_ - std::exchange(group.ball_path, ball_path_) + stretch * farthest;
+  group.all_path = all_path_;
+  return group.used;
+}
+
+/// Returns how many triangles were visited.
+std::size_t NearTriangles::look_at(Group& group, const Reach& reach, double margin) {
+  const BallPart& part = all_[group.part];
+  surface::NearSurface& surface = *part.surface;
+  if (part.patch != nullptr) cuts_.begin(*part.patch);
+  group.used = 0, group.found.clear();
+  const surface::NearSurface::Bound& bound = surface.groups()[group.number];
+  const double clearance = reach.clearance(bound.rest.moved(surface.displacements(bound)));
+  if (clearance > margin) return group.allowed = clearance, 0;
+  group.allowed = margin;
+  const Reach around = reach.grown(margin + kRounding);
+  std::size_t visited = 0;
+  surface.near(around, group.number, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
+    ++visited;
+    double turns = 0;
+    for (const std::int32_t corner : triangle.corner) turns = std::max(turns, 2 * surface.offset_size(corner));
+    if (around.meets(Box(corners[0], corners[1], corners[2]).grown(turns))) group.found.push_back(&triangle);
   });
+  return visited;
 }
 
-/// Visits groups until their triangles are `most` or all groups were visited.
-void NearTriangles::go_on(Look& look, const Vec3Array& position, std::size_t most) {
-  look.drift = std::max(look.drift, farthest_moved(look.position, position));
-  const Reach around = look.reach.grown(kRounding);
-  std::size_t seen = 0;
-  for (; look.part < look.parts.size() && seen < most; ++look.part, look.group = 0) {
-    surface::NearSurface& surface = *look.parts[look.part].surface;
-    for (; look.group < surface.groups().size() && seen < most; ++look.group, seen += kGroupCosts)
-      surface.near(around, look.group, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
-        ++seen;
-        double turns = 0;
-        for (const std::int32_t corner : triangle.corner) turns = std::max(turns, 2 * surface.offset_size(corner));
-        if (around.meets(Box(corners[0], corners[1], corners[2]).grown(turns)))
-          look.found.push_back({std::int32_t(look.part), &triangle});
-      });
-    if (look.group < surface.groups().size()) return;
+/// Lists what was found in all groups.
+void NearTriangles::list() {
+  parts_.assign(all_.begin(), all_.begin() + std::ptrdiff_t(whole_)), found_.clear(), slots_ = whole_slots_;
+  std::size_t last = whole_ - 1;  // the part that was listed last
+  for (const Group& group : groups_) {
+    if (group.found.empty()) continue;
+    if (group.part >= whole_ && last != group.part) {
+      last = group.part, parts_.push_back(all_[last]);
+      parts_.back().first_slot = slots_, slots_ += parts_.back().slots();
+    }
+    const std::size_t part = group.part < whole_ ? group.part : parts_.size() - 1;
+    for (const surface::NearSurface::Triangle* triangle : group.found) found_.push_back({std::int32_t(part), triangle});
   }
-}
-
-/// Begins the round for the patches of cuts that a look found in an earlier one.
-void NearTriangles::begin_round(const Look& look) {
-  for (std::size_t part = whole_; part < look.parts.size(); ++part) cuts_.begin(*look.parts[part].patch);
 }
 
 }  // namespace ctpm::contact

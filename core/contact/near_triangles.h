@@ -28,7 +28,10 @@ struct Reach {
   }
   bool meets(const Box& other) const { return box.meets(other) && gap(other, Box(centre)) <= farthest; }
   Reach grown(double by) const;
-  bool contains(const Reach& other) const;
+  /// By how much `other` would have to grow to contain it [m].
+  double beyond(const Reach& other) const;
+  /// By how much it may grow until it meets a box, which does not move [m]; not positive if they meet.
+  double clearance(const Box& other) const;
 };
 
 /// A surface that a ball may touch. Its vertices have the slots from `first_slot` on, and the points from `first_point`
@@ -46,10 +49,11 @@ struct BallPart {
   }
 };
 
-/// The triangles of organs and of their cuts that a ball may touch. They are looked for with a margin, and again only
-/// when ball and tissue may have come farther than that (as in the neighbour lists of Verlet, Phys. Rev. 159, 98,
-/// 1967). Before the margin is used up, the next look begins and goes on through several rounds, so that no tick bears
-/// it whole. Only what cannot be touched is left out: when they were looked for changes no result.
+/// The triangles of organs and of their cuts that a ball may touch. They are looked for with a margin, group by group,
+/// and again only when the ball and the spheres that the group follows may have come farther than that (as in the
+/// neighbour lists of Verlet, Phys. Rev. 159, 98, 1967). Groups of which the margin is half used up are looked at
+/// before that, a few in each round, so that no round bears all of them. Only what cannot be touched is left out: when
+/// they were looked for changes no result.
 class NearTriangles {
  public:
   struct Found {
@@ -65,37 +69,43 @@ class NearTriangles {
   /// `position` [m], in which those of whole organs and of the cuts already are.
   void find(const Reach& reach, double margin, const Vec3Array& position);
 
-  const std::vector<BallPart>& parts() const { return used_.parts; }   ///< those of whole organs first
-  const std::vector<Found>& triangles() const { return used_.found; }  ///< by part, in the order of NearSurface::near()
-  std::int32_t slots() const { return used_.slots; }
+  const std::vector<BallPart>& parts() const { return parts_; }   ///< those of whole organs first
+  const std::vector<Found>& triangles() const { return found_; }  ///< by part, in the order of NearSurface::near()
+  std::int32_t slots() const { return slots_; }
 
  private:
-  /// A look, which is done once all groups of all parts were visited.
-  struct Look {
-    bool has_begun = false;
-    std::uint32_t version = 0;
-    Reach reach{Vec3{}, 0};  ///< with the margin
-    Vec3Array position;      ///< in the round in which it began [m]
-    double stretch = 1;      ///< a vertex moves at most so many times as far as the farthest sphere
-    double drift = 0;        ///< of the farthest sphere, until the last group was visited [m]
-    std::vector<BallPart> parts;
-    std::vector<Found> found;
-    std::int32_t slots = 0;
-    std::size_t part = 0, group = 0;  ///< to be visited next
-
-    bool is_done() const { return part == parts.size(); }
-    bool holds(const Reach& now, double moved) const;
+  struct Group {
+    std::size_t part, number;            ///< in all_, and of its surface
+    std::vector<std::int32_t> sphere{};  ///< that it follows
+    std::vector<Vec3> seen{};            ///< where they were when `used` was last found [m]
+    double allowed = -1;                 ///< nothing is missing while no more than this is used [m]
+    double used = 0;                     ///< of it, until the ball and all spheres had come so far: [m]
+    double ball_path = 0, all_path = 0;
+    std::vector<const surface::NearSurface::Triangle*> found{};
   };
 
-  void begin(Look& look, const Reach& reach, const Vec3Array& position);
-  void go_on(Look& look, const Vec3Array& position, std::size_t most);
-  void begin_round(const Look& look);
+  void find_groups();
+  void follow(const Reach& reach, const Vec3Array& position);
+  double find_used(Group& group);
+  std::size_t look_at(Group& group, const Reach& reach, double margin);
+  void list();
 
   CutSurfaces& cuts_;
   const std::int32_t kind_;
   const std::size_t whole_;
   const std::int32_t whole_slots_;
-  Look used_, next_;
+  bool has_begun_ = false;
+  std::uint32_t version_ = 0;
+  std::vector<BallPart> all_;    ///< those of whole organs, and all patches of cuts
+  std::vector<Group> groups_;    ///< of all parts
+  double stretch_ = 1;           ///< a vertex moves at most so many times as far as the farthest sphere
+  Reach reach_{Vec3{}, 0};       ///< in the last round
+  Vec3Array position_;           ///< of the spheres in it [m]
+  double ball_path_ = 0;         ///< sum of how far the reach went beyond that of the round before [m]
+  double all_path_ = 0;          ///< the same, and of how far the vertices of the farthest sphere moved [m]
+  std::vector<BallPart> parts_;  ///< those of whole organs, and patches of which something was found
+  std::vector<Found> found_;
+  std::int32_t slots_ = 0;
 };
 
 }  // namespace ctpm::contact

@@ -239,14 +239,9 @@ bool CutPatches::covers(Vec3 rest) const {
 
 void CutPatches::begin(const Vec3Array& position) { position_ = &position, ++round_; }
 
-double CutPatches::stretch() {
-  if (is_cut()) make_rest();
-  return is_cut() ? stretch_ : 1;
-}
-
 /// Finds the bins of the spheres that each patch follows.
 void CutPatches::find_bins() {
-  bounded_.clear(), bins_of_patches_.clear(), stretch_ = 1, found_in_ = 0;
+  bounded_.clear(), bins_of_patches_.clear(), found_in_ = 0;
   const auto first_sphere = model_.organs[organ_].first;
   std::vector<Index> seen(parts_->by_bin.size(), -1);  // the last patch that followed a sphere in it
   for (Covered& covered : covered_)
@@ -262,7 +257,6 @@ void CutPatches::find_bins() {
         });
       bounded.last_bin = bins_of_patches_.size();
       bounded_.push_back(bounded);
-      stretch_ = std::max(stretch_, surface.stretch());
     }
 }
 

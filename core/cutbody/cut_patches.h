@@ -82,8 +82,6 @@ class CutPatches {
   void begin(const CutPatch& patch) { begin(covered_[std::size_t(index_of_[std::size_t(patch.block)])]); }
   /// The patch that a vertex of a block is in; null: there is none.
   CutPatch* patch(Index block, std::int32_t vertex);
-  /// A vertex moves at most so many times as far as the farthest sphere.
-  double stretch();
 
  private:
   struct Parts;
@@ -121,7 +119,6 @@ class CutPatches {
   bool are_made_ = false;               ///< all patches
   std::vector<Bounded> bounded_;        ///< of them, by block
   std::vector<Index> bins_of_patches_;
-  double stretch_ = 1;
   std::uint32_t round_ = 0, found_in_ = 0;
   const Vec3Array* position_ = nullptr;
   std::vector<Box> ranges_;  ///< of the displacements of each bin's spheres in round `found_in_` [m]
