@@ -22,6 +22,21 @@ inline void cut_along(const Model& model, const std::function<cutting::Front(dou
   }
 }
 
+/// A block with two cuts along y through all of it, up to `end` [m]. Between them is a strip of a seventh of a spacing
+/// in which no sphere is: what is far along it follows the spheres beyond the cuts' end.
+inline State long_strip(const Model& model, double end) {
+  State state = rest_state(model);
+  for (const double x : {-0.0007, 0.0011})
+    cut_along(
+        model,
+        [&](double t) {
+          const double y = -0.15 + t * (0.15 + end);
+          return straight_front({x, y, -0.02}, {x, y, 0.06});
+        },
+        state);
+  return state;
+}
+
 /// A block with a surface, a ball and a scalpel.
 inline Model block_to_cut(int ni, int nj, int nk, double ball_radius,
                           network::Structure structure = network::Structure::ctpm) {

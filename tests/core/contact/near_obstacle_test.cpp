@@ -155,19 +155,10 @@ TEST(NearObstacle, FindsThoseOfAPartThatMovesWhileAllElseRests) {
 
 TEST(NearObstacle, FindsThoseOfALongThinStripWhoseFarEndMoves) {
   const Model model = testing::block_to_cut(4, 20, 4, 0.008);
-  constexpr double kEnd = 0.066;  // of the cuts: spheres beyond it are the nearest along the strip
-  State state = rest_state(model);
-  for (const double x : {-0.0007, 0.0011})
-    testing::cut_along(
-        model,
-        [&](double t) {
-          const double y = -0.15 + t * (0.15 + kEnd);
-          return testing::straight_front({x, y, -0.02}, {x, y, 0.06});
-        },
-        state);
-  for (const ObstacleKind kind : {ObstacleKind::plane, ObstacleKind::box})
-    expect_all_found(model, above(kind, {0.02, 0.15, 0.01}, 0.02), state, 0,
-                     [&](Vec3 rest) { return rest.y > kEnd - 0.016; });
+  constexpr double kEnd = 0.066;
+  const State state = testing::long_strip(model, kEnd);
+  expect_all_found(model, above(ObstacleKind::plane, {}, 0.02), state, 0,
+                   [&](Vec3 rest) { return rest.y > kEnd - 0.016; });
 }
 
 }  // namespace

@@ -2,10 +2,13 @@
 
 #include "core/cutbody/cut_patches.h"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <thread>
 
 #include "tests/core/blade_blocks.h"
+#include "tests/core/cut_blocks.h"
 #include "tests/core/skinned_block.h"
 
 namespace ctpm {
@@ -85,6 +88,28 @@ TEST(CutPatches, StayWhereOnlyAnotherOrganIsCutAndGoOnAsIfTheyHadBeenMadeAnew) {
   cutbody::CutPatches fresh(model, 0);
   fresh.follow(std::make_shared<State>(state));
   expect_same(all_patches(followed, state), all_patches(fresh, state));
+}
+
+TEST(CutPatches, AreFoundWhereTheyAreThoughOnlySpheresFarAwayHaveMoved) {
+  constexpr double kEnd = 0.066;  // [m]
+  const Model model = testing::block_to_cut(4, 20, 4, 0.008);
+  State state = testing::long_strip(model, kEnd);
+  cutbody::CutPatches patches(model, 0);
+  patches.follow(std::make_shared<State>(state));
+  for (const double up : {0.0, 0.03, -0.05}) {
+    for (std::size_t i = 0; i < model.sphere_count(); ++i)
+      if (const Vec3 rest = model.rest_position[i]; rest.y > kEnd - 0.016) state.position.set(i, rest + Vec3{0, 0, up});
+    double farthest = 0;
+    for (cutbody::CutPatch* patch : all_patches(patches, state))
+      for (std::size_t v = 0; v < patch->body.surface.vertex_count(); ++v) {
+        const Vec3 at = patch->body.surface.place(std::int32_t(v));
+        farthest = std::max(farthest, norm(at - patch->body.surface.rest(std::int32_t(v))));
+        bool is_found = false;
+        patches.near(Box(at), [&](const cutbody::CutPatch& found) { is_found = is_found || &found == patch; });
+        ASSERT_TRUE(is_found) << "block " << patch->block << ", vertex " << v;
+      }
+    EXPECT_GE(farthest, std::abs(up));
+  }
 }
 
 TEST(CutPatches, AreTheSameWhoeverMakesThem) {
