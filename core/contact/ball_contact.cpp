@@ -201,7 +201,7 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
   if (!own_.empty()) {
     own_.begin(state.position);
     Box asked = reach.box;
-    if (reach.distance > ball.radius) asked.high.z = std::numeric_limits<double>::infinity();  // for is_inside()
+    asked.high.z = std::numeric_limits<double>::infinity();  // for is_inside()
     if (cuts_.wait_near(asked, state, own_)) reach = reach_of(state, ball);
   }
   NearTriangles& near = near_[ball.hand];
@@ -212,10 +212,10 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
   opening_.assign(slots - std::size_t(vertex_count_), -1.0);
   mark_touched(state, ball, 1);
   pressed_area_ = {};
-  beyond_.clear();
+  behind_.clear();
   for (const auto& [part, triangle] : near.triangles())
-    if (dent((*parts_)[std::size_t(part)], *triangle, ball, reach.distance, false)) beyond_.push_back({part, triangle});
-  dent_beyond(ball, reach.distance);
+    if (dent((*parts_)[std::size_t(part)], *triangle, ball, reach.distance, false)) behind_.push_back({part, triangle});
+  dent_behind(ball, reach.distance);
   mark_touched(state, ball, 0);
   const double a = std::sqrt(norm(pressed_area_) / kPi);
   std::sort(touched_.begin(), touched_.end());
@@ -224,12 +224,13 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
   parts_ = &whole_;
 }
 
-/// A surface outside the ball touches only while the ball is in the organ, deeper than the lattice follows. A ball that
-/// has left the organ may stay behind a fold or an overhanging wall: that is no contact.
-void BallContact::dent_beyond(const BallMotion& ball, double reach) {
+/// A surface that faces away from the ball's centre touches only while the ball is in the organ, deeper than the
+/// lattice follows. A ball that has left the organ may stay behind a fold or an overhanging wall, and one that presses
+/// a thin flap reaches through it to its far side: that is no contact.
+void BallContact::dent_behind(const BallMotion& ball, double reach) {
   std::int32_t organ = -1;
   bool is_in = false;
-  for (const auto& [index, triangle] : beyond_) {
+  for (const auto& [index, triangle] : behind_) {
     const Part& part = (*parts_)[std::size_t(index)];
     const std::int32_t its = organ_of(part, part.first_slot + triangle->corner[0]);
     if (its != organ) organ = its, is_in = is_inside(organ, ball.centre + ball.radius * kBeside);
@@ -291,10 +292,11 @@ double BallContact::share_of(const Part& part, std::int32_t slot, double radius)
   return std::min(1.0, opening / (kOpen * radius));
 }
 
-/// Adds to a triangle's corners its parts in the ball or, with `beyond`, those outside the ball that were touched.
-/// Returns whether it has parts of the other kind. `reach`: of the ball where it touched before [m].
+/// Adds to a triangle's corners those of its parts in the ball that face the ball's centre or, with `behind`, those
+/// that do not, in the ball or outside of it where they were touched. Returns whether it has parts of the other kind.
+/// `reach`: of the ball where it touched before [m].
 bool BallContact::dent(const Part& part, const surface::NearSurface::Triangle& triangle, const BallMotion& ball,
-                       double reach, bool beyond) {
+                       double reach, bool behind) {
   const Vec3 corners[3] = {part.surface->place(triangle.corner[0]), part.surface->place(triangle.corner[1]),
                            part.surface->place(triangle.corner[2])};
   std::int32_t vertex[3];
@@ -319,9 +321,9 @@ bool BallContact::dent(const Part& part, const surface::NearSurface::Triangle& t
     // Along the line inwards, the far side of the ball is `through` away.
     const double distance_squared = dot(apart, apart), height = dot(apart, outward);
     const double half_chord_squared = height * height - distance_squared + squared;
-    const bool is_beyond = distance_squared >= squared;
-    if (half_chord_squared <= 0 || (is_beyond && !(was_touched && height > 0))) return;
-    if (is_beyond != beyond) {
+    const bool is_behind = height > 0;
+    if (half_chord_squared <= 0 || (distance_squared >= squared && !(was_touched && is_behind))) return;
+    if (is_behind != behind) {
       has_others = true;
       return;
     }

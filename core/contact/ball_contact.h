@@ -84,8 +84,8 @@ class BallContact {
   bool is_hidden(const Part& part, const surface::NearSurface::Triangle& triangle, const double* weights) const;
   double share_of(const Part& part, std::int32_t slot, double radius);
   bool dent(const Part& part, const surface::NearSurface::Triangle& triangle, const BallMotion& ball, double reach,
-            bool beyond);
-  void dent_beyond(const BallMotion& ball, double reach);
+            bool behind);
+  void dent_behind(const BallMotion& ball, double reach);
   bool is_inside(std::int32_t organ, Vec3 point);
   static Vec3 place_of(const Part& part, std::int32_t vertex, const StateView& state);
   void press_slot(const StateView& state, const BallMotion& ball, std::int32_t slot, double radius,
@@ -109,7 +109,7 @@ class BallContact {
   std::vector<std::uint8_t> was_touched_;     ///< at the start of the substep
   std::vector<double> opening_;               ///< at the vertices of patches [m]
   std::vector<std::int32_t> touched_;         ///< slots with an area
-  std::vector<NearTriangles::Found> beyond_;  ///< triangles that were touched and have parts outside the ball
+  std::vector<NearTriangles::Found> behind_;  ///< triangles with parts that face away from the ball's centre
   Vec3 pressed_area_;                         ///< sum over the pressed areas, each along the ball's radius [m^2]
   /// Spheres [first, last) of the organs without a surface.
   std::vector<std::pair<std::size_t, std::size_t>> bare_;

@@ -4,19 +4,13 @@
 #include <new>
 #include <utility>
 
-#include "core/cutbody/nearest_spheres.h"
 #include "core/cutting/swept_surface.h"
 
 namespace ctpm::contact {
 namespace {
 
-/// Patches stand for the organ's own surface up to so many spacings from a cut, along each axis of the lattice: in the
-/// cut's block and the two next to it, and up to half a block beyond.
-constexpr double kFarthestPatch = 3.75;
-constexpr double kDiagonal = 1.7321;  ///< of a cube: the lattice may be turned
-
-/// What turns with spheres may be so far from where these carry it, in spacings: twice as far as it is from them.
-constexpr double kTurned = 2 * kDiagonal * cutbody::NearestSpheres::kMostHops / cutbody::CutGrid::kPerSpacing;
+/// Twice the length of the organs, and some more for spheres outside of their surface.
+constexpr double kTurned = 2.5;
 
 /// A blade that cut nothing for so many ticks has probably done its cut.
 constexpr int kRests = 50;
@@ -60,7 +54,6 @@ static bool is_same(const State& surface, const State& state, std::size_t rows) 
 }
 
 CutSurfaces::CutSurfaces(const Model& model, StageWatch* watch) : model_(model), watch_(watch), points_(model) {
-  for (const OrganRange& organ : model.organs) spacing_ = std::max(spacing_, organ.spacing);
   if (!model.has_tool(ToolKind::ball) && !model.has_meeting_bodies()) return;
   for (std::size_t organ = 0; organ < model.organs.size(); ++organ) {
     organs_.emplace_back();
@@ -103,9 +96,6 @@ void CutSurfaces::start(const State& state, std::size_t rows) {
   surface->swept_organ.assign(state.swept_organ.begin(),
                               state.swept_organ.begin() + std::ptrdiff_t(surface->swept.size()));
   surface->axial_severed = known_severed(state, rows);
-  if (rows > 0) around_ = Box(surface->swept[0]);
-  for (std::size_t n = 0; n < surface->swept.size(); ++n) around_.add(surface->swept[n]);
-  around_ = around_.grown(kDiagonal * kFarthestPatch * spacing_);
   followed_ = surface, is_cut_ = false, ++version_;
 
   std::promise<std::vector<std::uint8_t>> hidden;
@@ -132,13 +122,13 @@ void CutSurfaces::start(const State& state, std::size_t rows) {
 
 bool CutSurfaces::wait_near(const Box& region, const StateView& state, const surface::NearSurface& organs) {
   if (!follows_.valid()) return false;
-  const Box displacements = organs.displacements();
-  // Weights near a cut may be negative. How far its patches move is not known before all are made.
+  const Box &displacements = organs.displacements(), &rest = organs.rest_box();
+  // Weights near a cut may be negative; and what turns with a sphere may be as far from it as the organs are long, on
+  // either side.
   const Vec3 size = displacements.high - displacements.low;
-  const Box by = Box(displacements.low - size, displacements.high + size).grown(kTurned * spacing_);
-  const bool is_near = region.meets(around_.moved(by)) && region.meets(organs.rest_box().moved(by));
-  if (!is_near && std::none_of(state.touched.begin(), state.touched.end(),
-                               [&](std::int32_t point) { return points_.contains(point); }))
+  const Box by = Box(displacements.low - size, displacements.high + size).grown(kTurned * norm(rest.high - rest.low));
+  if (!region.meets(rest.moved(by)) && std::none_of(state.touched.begin(), state.touched.end(),
+                                                    [&](std::int32_t point) { return points_.contains(point); }))
     return false;
   wait();
   return true;

@@ -117,7 +117,6 @@ class CutSurfaces {
   cutting::Front seen_{};
   int rested_ = 0;                         ///< ticks since the blade cut
   std::shared_ptr<const State> followed_;  ///< only with a swept surface; null: nothing was cut
-  Box around_{Vec3{}};                     ///< what patches stand for at rest [m]
   /// What will be in hidden_. While it is valid the worker has organs_ to itself.
   std::future<std::vector<std::uint8_t>> follows_;
   std::jthread worker_;

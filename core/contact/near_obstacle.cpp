@@ -29,7 +29,7 @@ NearObstacle::NearObstacle(const Model& model, surface::Body& body, const surfac
 const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& position) {
   const double moved = has_begun_ ? farthest_moved(position_, position, std::size_t(organ_.first)) : 0;
   path_ += moved, ++round_;
-  if (version_ != cuts_.version()) find_parts();
+  if (!has_parts_ || version_ != cuts_.version()) find_parts();
   if (!(path_ < kLongestPath)) look_at_all();
   has_begun_ = true;
   for (std::size_t s = 0; s < position_.size(); ++s) position_.set(s, position[std::size_t(organ_.first) + s]);
@@ -49,12 +49,12 @@ const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& posi
 
 /// Begins with the parts that there are.
 void NearObstacle::find_parts() {
-  version_ = cuts_.version();
-  parts_.clear(), regions_.clear(), due_at_.clear();
+  parts_.clear(), regions_.clear(), has_parts_ = false;
   add_part(body_, nullptr);
   if (cutbody::CutPatches* const patches = cuts_.patches(std::size_t(body_.organ)))
     patches->for_each([&](cutbody::CutPatch& patch) { add_part(patch.body, &patch); });
   due_at_.resize(regions_.size());
+  version_ = cuts_.version(), has_parts_ = true;
   look_at_all();
 }
 

@@ -72,7 +72,7 @@ class NearObstacle {
   surface::Body& body_;
   const surface::ObstacleShape& shape_;
   CutSurfaces& cuts_;
-  bool has_begun_ = false;
+  bool has_begun_ = false, has_parts_ = false;
   std::uint32_t version_ = 0;
   Vec3Array position_;       ///< of the organ's spheres in the last round [m]
   double path_ = 0;          ///< sum over the rounds of how far the farthest of them moved [m]

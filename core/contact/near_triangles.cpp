@@ -41,7 +41,7 @@ double Reach::clearance(const Box& other) const {
 NearTriangles::NearTriangles(const std::vector<BallPart>& whole, std::int32_t slots, CutSurfaces& cuts,
                              std::int32_t kind)
     : cuts_(cuts), kind_(kind), whole_(whole.size()), whole_slots_(slots), all_(whole) {
-  // As long as nothing is cut, ticks take no memory.
+  // As long as nothing is cut, only the first tick takes memory.
   std::size_t triangles = 0;
   for (const BallPart& part : whole) triangles += part.surface->triangles().size();
   found_.reserve(triangles), parts_.reserve(whole_);
@@ -50,8 +50,7 @@ NearTriangles::NearTriangles(const std::vector<BallPart>& whole, std::int32_t sl
 
 /// Begins with the parts that there are.
 void NearTriangles::find_groups() {
-  version_ = cuts_.version(), has_begun_ = false;
-  all_.resize(whole_), groups_.clear(), stretch_ = 1;
+  all_.resize(whole_), groups_.clear(), stretch_ = 1, has_groups_ = has_begun_ = is_listed_ = false;
   if (cuts_.any())
     cuts_.for_each([&](cutbody::CutPatch& patch) {
       all_.push_back({0, cuts_.first_point(kind_, patch), &patch.body.surface, &patch.gathering, &patch});
@@ -68,12 +67,12 @@ void NearTriangles::find_groups() {
                                       surface.patches()[std::size_t(bound.first)].first));
     }
   }
+  version_ = cuts_.version(), has_groups_ = true;
 }
 
 void NearTriangles::find(const Reach& reach, double margin, const Vec3Array& position) {
-  if (version_ != cuts_.version()) find_groups();
+  if (!has_groups_ || version_ != cuts_.version()) find_groups();
   follow(reach, position);
-  bool is_new = false;
   std::size_t visited = 0;
   for (Group& group : groups_) {
     // How far all have come bounds how far its own spheres have.
@@ -83,11 +82,11 @@ void NearTriangles::find(const Reach& reach, double margin, const Vec3Array& pos
     const double used = find_used(group) + kRounding;
     const bool may_wait = used < group.allowed;
     if (may_wait && (used < enough || visited >= kMostAtOnce)) continue;
+    is_listed_ = false;
     const std::size_t triangles = look_at(group, reach, margin);
     if (may_wait) visited += triangles;
-    is_new = true;
   }
-  if (is_new) list();
+  if (!is_listed_) list();
   for (const BallPart& part : std::span(parts_).subspan(whole_)) cuts_.begin(*part.patch);
 }
 

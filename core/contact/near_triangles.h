@@ -94,7 +94,7 @@ class NearTriangles {
   const std::int32_t kind_;
   const std::size_t whole_;
   const std::int32_t whole_slots_;
-  bool has_begun_ = false;
+  bool has_begun_ = false, has_groups_ = false, is_listed_ = false;
   std::uint32_t version_ = 0;
   std::vector<BallPart> all_;    ///< those of whole organs, and all patches of cuts
   std::vector<Group> groups_;    ///< of all parts

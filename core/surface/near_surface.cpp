@@ -61,9 +61,12 @@ NearSurface::NearSurface(const Model& model, std::size_t organ, const Surface& p
 }
 
 void NearSurface::find_bounds(Index triangles_per_patch) {
+  if (vertex_count() == 0) return;
+  find_places_in_spheres();
+  position_.resize(spheres_.size()), moved_.resize(spheres_.size());
+  placed_.resize(vertex_count()), placed_in_.assign(vertex_count(), 0);
   if (triangles_.empty()) return;
   sort_triangles();
-  find_places_in_spheres();
   const auto count = Index(triangles_.size());
   std::vector<Index> seen(spheres_.size(), -1);
   for (Index t = 0; t < count; t += triangles_per_patch) {
@@ -80,8 +83,6 @@ void NearSurface::find_bounds(Index triangles_per_patch) {
   for (const Vec3& p : rest_) rest_box_.add(p);
   for (const Bound& group : groups_)
     widen_ = std::max(widen_, group.widen), most_turned_ = std::max(most_turned_, group.turned);
-  position_.resize(spheres_.size()), moved_.resize(spheres_.size());
-  placed_.resize(vertex_count()), placed_in_.assign(vertex_count(), 0);
 }
 
 void NearSurface::copy_followers(const Surface& surface, const OrganRange& organ) {
@@ -187,7 +188,7 @@ void NearSurface::find_places_in_spheres() {
 
 void NearSurface::begin(const Vec3Array& position) {
   ++round_;
-  if (empty()) return;
+  if (vertex_count() == 0) return;
   for (std::size_t i = 0; i < spheres_.size(); ++i) position_[i] = position[std::size_t(spheres_[i])];
 }
 

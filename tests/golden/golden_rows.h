@@ -282,8 +282,27 @@ inline constexpr GoldenRow kGoldenRevision19[] = {
 };
 
 inline constexpr GoldenRow kGoldenRevision20[] = {
-    {"long strip, auto", {0xc3ccc9ebd4337fbc, 0x2e6ae804277ed0e6, 0xbe4319aa63664aa3, 0xc7e065600d43e4f3}},
-    {"long strip, sdirk2", {0xb5f19139939278c6, 0x654ac779d07b4bbc, 0x30476eec26064ff4, 0x8f54021146c42de3}},
+    {"long strip, auto", {0xc3ccc9ebd4337fbc, 0x2e6ae804277ed0e6, 0xbe4319aa63664aa3, 0xd779e6a055efa62e}},
+    {"long strip, sdirk2", {0xb5f19139939278c6, 0x654ac779d07b4bbc, 0x30476eec26064ff4, 0x1a7d0e95ce6e878d}},
+    {"skinned, auto", {0xf3bffb4aa45235bf, 0xbbffa7c592df0094, 0x59b8634aa617a94a, 0x7076546a9f2848d6}},
+    {"skinned, sdirk2", {0xb9afbe8c4d1d969f, 0x7d1de38ecca79ea1, 0xa56f73ff2ab4aef5, 0xe67a512010328272}},
+    {"soft and skinned, auto", {0x2167393320c256c0, 0x73785f893fc58b4a, 0xfe88867b487f85f0, 0x3062fbd72d5c0dce}},
+    {"touched cut, auto", {0xff890838b753aeda, 0xc2964c266f6d3dfa, 0xbb542c937faa159f, 0x5c8efdcaf7e5880b}},
+    {"touched cut, sdirk2", {0xfff94fb4d8b04cb2, 0x9c3ab6f566ffcb22, 0x58b88fd24dff4b45, 0xf8b2a4c3b3b10966}},
+    {"soft and touched cut, auto", {0xd5f884a9e30aa820, 0xa8ca57b2b3f9310e, 0x560b536dcb62bbec, 0xa1c2298fec92b5c9}},
+    {"touched slice, auto", {0xc651e673aaed1229, 0xf5a083e760a53fea, 0x9275339255a1e1b3, 0xef80760466ad88c4}},
+    {"touched slice, sdirk2", {0x7f2b67ca4ea3f792, 0xfa0514df994c3eb0, 0x843d60ce3c8c6d87, 0x1f0232232bc9e095}},
+    {"soft and touched slice, auto", {0x0aebf3b27fba0d04, 0x48f5ebb3b9b1b20b, 0x83d59a6edd6063b3, 0xeee4cde18110e2d7}},
+    {"touched tear, auto", {0xc651e673aaed1229, 0x2daa381a3a772e97, 0xbe7502bc1bb26592, 0x5ccfe652f6cddebc}},
+    {"touched tear, sdirk2", {0x7f2b67ca4ea3f792, 0xd38c18f8b4227a0c, 0xd037f8a86ee90194, 0x425b5e9aeb6c1a7f}},
+    {"touched bridge, auto", {0xc651e673aaed1229, 0xe9e40072544d0154, 0xfd1e5fa8eae3f2cc, 0x6b4942d5d00923e4}},
+    {"touched bridge, sdirk2", {0x7f2b67ca4ea3f792, 0x0b74c9e55486259b, 0x2375d7e2f4777d49, 0xd1ff29edc5134d79}},
+    {"touched plane, auto", {0x05c70d5366a0e86f, 0x8387584449065cec, 0x0c133ab6d800e748, 0x11c7a1e8879435ab}},
+    {"touched plane, sdirk2", {0x943a47562b9eb657, 0xe532eaa507a2ec22, 0xd3f8e1be82af0675, 0x132717d94758c771}},
+    {"touched edge, auto", {0x61cbf0e6f2fb833a, 0xc360c6b0e0a5d91e, 0xfff38ec03a529734, 0xb2504926071a0056}},
+    {"touched edge, sdirk2", {0x4e25e343a3f4899d, 0xfb43f3c94afbfcf2, 0x650568df146b82b5, 0x633f398a727e96fd}},
+    {"fine mesh, auto", {0x00c4c498b1ca5a4c, 0x61b0fff1042a87b0, 0x70ee73baaa9e928d, 0x7ad86f1fda0f365b}},
+    {"fine mesh, sdirk2", {0xfbc106aac38946d1, 0x970261862069dfd3, 0x416142254c0f4879, 0xbed2098026f775ab}},
 };
 
 inline constexpr GoldenRevision kGoldenRevisions[] = {
@@ -296,7 +315,7 @@ inline constexpr GoldenRevision kGoldenRevisions[] = {
     {13, kGoldenRevision13, 0xa5637b24229bb1f2}, {14, kGoldenRevision14, 0x463cb460f23844de},
     {15, kGoldenRevision15, 0xc7644e74b0d461e5}, {16, kGoldenRevision16, 0x304838863b606220},
     {17, kGoldenRevision17, 0x47d495b0831911b},  {18, kGoldenRevision18, 0x519dbe9952522cb},
-    {19, kGoldenRevision19, 0xbcff56bc1d9b0f37}, {20, kGoldenRevision20, 0x7421423541d8b05b},
+    {19, kGoldenRevision19, 0xbcff56bc1d9b0f37}, {20, kGoldenRevision20, 0xc16065d9ee0c4396},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

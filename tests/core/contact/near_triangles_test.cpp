@@ -21,12 +21,19 @@ constexpr double kRadius = 0.008, kMargin = 0.3 * kRadius;  // [m]
 /// A triangle: the block of the grid that its patch is in (-1: it is of the whole surface), the piece, and its corners.
 using Seen = std::array<std::int32_t, 5>;
 
+/// Whether the reach has one of four points of a triangle.
+template <class Place>
+bool has_any(const Reach& reach, Place&& place) {
+  const Vec3 a = place(0), b = place(1), c = place(2);
+  return reach.meets(Box(a)) || reach.meets(Box(b)) || reach.meets(Box(c)) || reach.meets(Box((a + b + c) / 3));
+}
+
 std::vector<Seen> touching(const NearTriangles& near, const Reach& reach) {
   std::vector<Seen> seen;
   for (const auto& [part, triangle] : near.triangles()) {
     const BallPart& of = near.parts()[std::size_t(part)];
     const auto place = [&](int c) { return of.surface->place(triangle->corner[c]); };
-    if (!reach.meets(Box(place(0), place(1), place(2)))) continue;
+    if (!has_any(reach, place)) continue;
     const bool is_whole = of.patch == nullptr;
     seen.push_back({is_whole ? -1 : of.patch->block, is_whole ? -1 : of.patch->piece, triangle->corner[0],
                     triangle->corner[1], triangle->corner[2]});
@@ -76,7 +83,7 @@ void expect_nothing_left_out(const Model& model, State state, bool is_cut) {
     std::size_t own = 0;
     for (const auto& t : model.surfaces[0].triangle) {
       const auto place = [&](std::size_t c) { return anew.place(t[c]); };
-      own += reach.meets(Box(place(0), place(1), place(2)));
+      own += has_any(reach, place);
     }
     ASSERT_EQ(std::count_if(seen.begin(), seen.end(), [](const Seen& s) { return s[0] < 0; }), std::ptrdiff_t(own));
   }

@@ -198,6 +198,23 @@ TEST_P(SurfaceContact, IsGoneOnceTheBallHasLeftAFold) {
   EXPECT_GT(clear_of_it, 1000);
 }
 
+TEST_P(SurfaceContact, ReachesThroughNoThinFlapToItsFarSide) {
+  constexpr double kRadius = 0.03, kThick = 0.012;  // [m]
+  Model model = testing::make_skinned_block(6, 6, 2);
+  model.tools = {testing::ball(kRadius)};
+  model.solver.integrator = GetParam(), model.solver.substeps = GetParam() == Integrator::leapfrog ? 4 : 1;
+  model.held_axes.assign(model.sphere_count(), 0);
+  for (const double deep : {0.004, 0.016, 0.025}) {  // the last two are deeper than it is thick
+    State state = rest_state(model);
+    stepping::Stepper stepper(model);
+    const stepping::StepReport report = stepper.step(state, at({0.001, 0.002, kThick + kRadius - deep}));
+    EXPECT_GT(report.tool_force.z, 0) << deep;
+    ASSERT_FALSE(state.touched.empty());
+    for (const std::int32_t vertex : state.touched)
+      EXPECT_NEAR(model.surfaces[0].vertex[std::size_t(vertex)].z, kThick, 1e-9) << deep;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Under, SurfaceContact,
                          ::testing::Values(Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2));
 
