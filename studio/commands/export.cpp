@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/model/errors.h"
@@ -130,8 +131,10 @@ Result<film::ExportOutcome> export_one(ExportArguments arguments, std::vector<re
     if (!matched) return matched.errors();
     arguments.options.matched = std::move(*matched);
   }
+  const Result<Done> same = sessions.size() == 2 ? compare::check_same_scene(*sessions[0], *sessions[1]) : Done{};
+  if (!same && arguments.ghost.empty()) print_warnings(same.errors());
   if (!arguments.ghost.empty()) {
-    if (const Result<Done> same = compare::check_same_scene(*sessions[0], *sessions[1]); !same) return same.errors();
+    if (!same) return same.errors();
     arguments.options.ghost = sessions.back();
     sessions.pop_back();
   }
@@ -155,15 +158,36 @@ Result<std::vector<recordings::SessionReader>> open_all(const std::vector<std::s
   return readers;
 }
 
+/// A name for each file: that of the file, after those of as many of its folders as tell it from the others.
+std::map<std::string, std::string> names_of(const std::vector<std::string>& files) {
+  std::map<std::string, std::string> names;
+  std::map<std::string, std::filesystem::path> folders;  // that are not in the names yet
+  for (const std::string& file : files) {
+    const std::filesystem::path path = std::filesystem::absolute(file).lexically_normal();
+    names[file] = path.stem().string(), folders[file] = path.parent_path();
+  }
+  for (bool any = true; std::exchange(any, false);) {
+    std::map<std::string, int> count;
+    for (const auto& [file, name] : names) ++count[name];
+    for (auto& [file, name] : names) {
+      std::filesystem::path& folder = folders[file];
+      if (count[name] < 2 || !folder.has_filename()) continue;
+      name = folder.filename().string() + "-" + name, folder = folder.parent_path(), any = true;
+    }
+  }
+  return names;
+}
+
 /// A video of each session in a folder, and a table of them. A session that fails leaves the others alone.
 int run_many(const ExportArguments& arguments) {
   const std::filesystem::path folder = arguments.output;
   const std::string table_path = (folder / "results.csv").string();
   Errors errors;
-  std::map<std::string, std::string> names;
+  const std::map<std::string, std::string> names = names_of(arguments.files);
+  std::map<std::string, std::string> files;
   for (const std::string& file : arguments.files) {
-    const auto [other, is_new] = names.emplace(std::filesystem::path(file).stem().string(), file);
-    if (!is_new) errors.push_back({file, "would have the same video as " + other->second, "rename one of them"});
+    const auto [other, is_new] = files.emplace(names.at(file), file);
+    if (!is_new) errors.push_back({file, "would have the same video as " + other->second, "give each session once"});
   }
   std::error_code failed;
   if (std::filesystem::exists(folder, failed))
@@ -178,7 +202,7 @@ int run_many(const ExportArguments& arguments) {
   for (const std::string& file : arguments.files) {
     if (arguments.options.should_stop()) break;
     ExportArguments own = arguments;
-    own.output = (folder / (std::filesystem::path(file).stem().string() + ".mp4")).string();
+    own.output = (folder / (names.at(file) + ".mp4")).string();
     Result<std::vector<recordings::SessionReader>> readers = open_all({file});
     const Result<film::ExportOutcome> outcome =
         readers ? export_one(own, *readers) : Result<film::ExportOutcome>(readers.errors());

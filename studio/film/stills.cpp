@@ -40,13 +40,15 @@ Result<Reel> reel_of(const std::vector<recordings::SessionReader*>& sessions, st
 Result<std::vector<std::vector<render::Frame>>> draw_stills(const std::vector<recordings::SessionReader*>& sessions,
                                                             const std::vector<StillsRequest>& requests,
                                                             const StillCaption& caption, const ExportOptions& options) {
+  ExportOptions bare = options;  // nothing but a caption stands in a still: no room is made for panels
+  bare.overlay = "none";
   std::int64_t done = 0, total = 0;
   for (const StillsRequest& request : requests) total += std::int64_t(request.ticks.size());
   std::vector<std::vector<render::Frame>> stills(sessions.size());
   std::optional<Seen> first;
   for (std::size_t s = 0; s < sessions.size(); ++s) {
     // One after the other, because each takes much memory.
-    Result<Reel> made = reel_of(sessions, s, requests[s].ticks, first, options);
+    Result<Reel> made = reel_of(sessions, s, requests[s].ticks, first, bare);
     if (!made) return made.errors();
     Reel& reel = *made;
     if (!first) first = seen_in(reel);

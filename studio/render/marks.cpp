@@ -5,13 +5,15 @@
 #include <opencv2/imgproc.hpp>
 
 #include "studio/output/number_text.h"
+#include "studio/render/plain_text.h"
 
 namespace ctpm::render {
 namespace {
 
 cv::Scalar colour_of(const Mark& mark) { return {255 * mark.colour[0], 255 * mark.colour[1], 255 * mark.colour[2]}; }
 
-void write_label(cv::Mat& rgb, cv::Point at, const std::string& text, const cv::Scalar& colour, double scale) {
+void write_label(cv::Mat& rgb, cv::Point at, const std::string& name, const cv::Scalar& colour, double scale) {
+  const std::string text = plain_text(name);
   const cv::Point place = at + cv::Point(int(12 * scale), int(-8 * scale));
   // A dark rim keeps it readable on every organ.
   cv::putText(rgb, text, place, cv::FONT_HERSHEY_DUPLEX, 0.5 * scale, {20, 24, 28}, int(std::ceil(3 * scale)),

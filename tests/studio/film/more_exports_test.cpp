@@ -173,11 +173,34 @@ TEST_F(MoreExports, SeveralSessionsAreFilmsInAFolderWithATable) {
   const auto one_file = export_to("a.mp4", {kExpert, kClumsy}, quick);
   EXPECT_EQ(one_file.code, 2);
   EXPECT_TRUE(holds(one_file.err, "several sessions are given")) << one_file.err;
-  fs::copy_file(kExpert, folder_.path() / "kidney-cut-expert.ctpm");
-  const auto same_name = export_to("more", {kExpert, "kidney-cut-expert.ctpm"}, quick);
-  EXPECT_EQ(same_name.code, 2);
-  EXPECT_TRUE(holds(same_name.err, "would have the same video as")) << same_name.err;
+  const auto twice = export_to("more", {kExpert, kExpert}, quick);
+  EXPECT_EQ(twice.code, 2);
+  EXPECT_TRUE(holds(twice.err, "would have the same video as")) << twice.err;
   EXPECT_FALSE(fs::exists(folder_.path() / "more"));
+}
+
+// A folder for each trainee, as cohort takes them.
+TEST_F(MoreExports, SessionsOfOneNameAreToldApartByTheirFolders) {
+  std::vector<std::string> sessions;
+  for (const char* name : {"ana/first/1.ctpm", "ben/first/1.ctpm", "ben/2.ctpm"}) {
+    fs::create_directories((folder_.path() / name).parent_path());
+    fs::copy_file(kExpert, folder_.path() / name), sessions.emplace_back(name);
+  }
+  const auto shown = export_to("films", sessions, {"--from-s", "0.5", "--to-s", "0.6", "--fps", "10"});
+  EXPECT_EQ(shown.code, 0) << shown.err;
+  for (const char* name : {"ana-first-1.mp4", "ben-first-1.mp4", "2.mp4"})
+    EXPECT_TRUE(fs::exists(folder_.path() / "films" / name)) << name << '\n' << shown.out;
+}
+
+TEST_F(MoreExports, ItIsSaidThatSessionsBesideEachOtherAreOfTwoScenes) {
+  const std::vector<std::string> quick{"--from-s", "0.5", "--to-s", "0.6", "--fps", "10", "--align", "clock"};
+  std::vector<std::string> liver = quick, kidney = quick;
+  liver.insert(liver.end(), {"--beside", kShipped + "liver-press-expert.ctpm"});
+  kidney.insert(kidney.end(), {"--beside", kClumsy});
+  const auto two = export_to("two.mp4", {kExpert}, liver), one = export_to("one.mp4", {kExpert}, kidney);
+  EXPECT_EQ(two.code, 0) << two.err;
+  EXPECT_TRUE(holds(two.err, "warning: is of another scene than")) << two.err;
+  EXPECT_FALSE(holds(one.err, "another scene")) << one.err;
 }
 
 TEST_F(MoreExports, APartIsShownThoughTheSessionIsDamagedElsewhere) {

@@ -1,4 +1,5 @@
 #include "studio/render/overlay.h"
+#include "studio/render/plain_text.h"
 
 #include <gtest/gtest.h>
 
@@ -19,6 +20,16 @@ render::OverlayData full_data() {
   data.legend = {"stretch [%]", "-20", "+20", {{0.1, 0.2, 0.7}, {0.8, 0.8, 0.8}, {0.8, 0.1, 0.1}}, false};
   for (int i = 0; i <= 12345; i += 5) data.history.push_back({i * 1e-3, 1 + std::sin(i * 0.003)});
   return data;
+}
+
+TEST(PlainText, HasTheLettersOfPictures) {
+  EXPECT_EQ(render::plain_text("kidney 3, 4.5 N"), "kidney 3, 4.5 N");
+  EXPECT_EQ(render::plain_text("Jörg Müller – erster"), "Jorg Muller - erster");
+  EXPECT_EQ(render::plain_text("Łukasz, Åse, François, Ștefan, Đặng"), "Lukasz, Ase, Francois, Stefan, Dang");
+  EXPECT_EQ(render::plain_text("Печень"), "Pecen'");
+  EXPECT_EQ(render::plain_text("肝"), "gan");
+  EXPECT_EQ(render::plain_text("a \xf0\x9f\xab\x80"), "a ?") << "one sign for a letter without a form";
+  EXPECT_EQ(render::plain_text("\xff"), "?") << "no UTF-8";
 }
 
 TEST(Overlay, TextsNeitherOverlapNorLeaveThePicture) {
