@@ -413,7 +413,7 @@ class Import {
                  choice->is_inside_out ? "the script's blade turns soft tissue inside out before it cuts"
                                        : "the script's blade takes the organ along by up to " +
                                              importers::mm_text(choice->dragged) + " before it cuts",
-                 "the gentlest of four cuts was taken", "hold more of the organ, or name the tissue that it is");
+                 "the gentlest cut of those tried was taken", "hold more of the organ, or name the tissue that it is");
     return {};
   }
 

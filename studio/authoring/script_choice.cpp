@@ -10,10 +10,11 @@
 namespace ctpm::authoring {
 namespace {
 
-/// The usual place first, then others, then right through the organ, where what holds it may be near.
-constexpr scenes::ScriptPlace kPlaces[] = {{},           {0.12},        {-0.12},      {0.24},
-                                           {-0.24},      {0, true},     {0.3, true},  {-0.3, true},
-                                           {0.15, true}, {-0.15, true}, {0.45, true}, {-0.38, true}};
+/// The usual place first, then others.
+constexpr scenes::ScriptPlace kPlaces[] = {{}, {0.12}, {-0.12}, {0.24}, {-0.24}};
+/// Right through the organ, where what holds it may be near.
+constexpr scenes::ScriptPlace kThrough[] = {{0, true},     {0.3, true},  {-0.3, true}, {0.15, true},
+                                            {-0.15, true}, {0.45, true}, {-0.38, true}};
 /// Of the usual depth, for an organ that a blade so deep takes along: its force is toughness times depth.
 constexpr double kShallower[] = {0.7, 0.5, 0.35};
 /// A blade may take an organ's spheres along by so much of its least extent in the mean (our choice: at a tenth the
@@ -27,7 +28,9 @@ double least_extent(const std::vector<Vec3>& point) {
   return std::min({size.x, size.y, size.z});
 }
 
-bool is_gentler(const ScriptChoice& a, const ScriptChoice& b) {
+bool is_better(const ScriptChoice& a, const ScriptChoice& b) {
+  if (a.works() != b.works()) return a.works();
+  if (!a.works()) return false;
   return a.is_inside_out != b.is_inside_out ? b.is_inside_out : a.dragged < b.dragged;
 }
 
@@ -54,7 +57,7 @@ class Trials {
     choice.is_refused = trial->is_refused;
     choice.most_force = trial->most_force, choice.was_cut = trial->was_cut[0] && trial->severed > 0;
     choice.is_inside_out = trial->is_inside_out, choice.dragged = trial->dragged;
-    choice.drags = !place.cuts_through && (trial->is_inside_out || trial->dragged > most_dragged_);
+    choice.drags = trial->is_inside_out || (!place.cuts_through && trial->dragged > most_dragged_);
     choice.usual_work = trial->usual_work, choice.dearest_work = trial->dearest_work;
     return choice;
   }
@@ -76,19 +79,24 @@ std::optional<ScriptChoice> choose_script(const scenes::SceneSpec& scene, const 
                                           const std::function<bool()>& should_stop) {
   Trials trials(scene, filled, standing, is_timed, should_stop);
   std::optional<ScriptChoice> best;
-  scenes::ScriptPlace place;
-  for (const scenes::ScriptPlace other : kPlaces) {
-    std::optional<ScriptChoice> choice = trials.at(other);
-    if (!choice) return std::nullopt;
-    if (!best || choice->works()) best = std::move(choice), place = other;
-    if (best->works()) break;
-  }
-  for (const double share : kShallower) {
-    if (!best->drags) break;
-    place.depth_share = share;
+  // Returns whether it went on.
+  const auto try_at = [&](scenes::ScriptPlace place) {
     std::optional<ScriptChoice> choice = trials.at(place);
-    if (!choice) return std::nullopt;
-    if (choice->works() && is_gentler(*choice, *best)) best = std::move(choice);
+    if (!choice) return false;
+    if (!best || is_better(*choice, *best)) best = std::move(choice);
+    return true;
+  };
+  for (scenes::ScriptPlace place : kPlaces) {
+    if (!try_at(place)) return std::nullopt;
+    // Where an organ gives way before it is cut, a blade that is less deep may cut it.
+    const bool is_usual = place.along == 0;
+    for (const double share : kShallower)
+      if (place.depth_share = share; best->drags && (is_usual || best->works()) && !try_at(place)) return std::nullopt;
+    if (best->works()) return best;
+  }
+  for (const scenes::ScriptPlace& place : kThrough) {
+    if (!try_at(place)) return std::nullopt;
+    if (best->works() && !best->drags) break;
   }
   return best;
 }
