@@ -125,6 +125,11 @@ class MistakeFinder {
 
   std::string quotes_hint() const {
     if (text_[at_] == '\'') return "texts stand in double quotes, not in single ones";
+    for (const std::string_view curly : {"\u201c", "\u201d", "\u201e", "\u00ab", "\u00bb"})
+      if (text_.substr(at_).starts_with(curly)) return "texts stand in straight double quotes, not in curly ones";
+    const auto is_digit = [&](std::size_t at) { return text_[at] >= '0' && text_[at] <= '9'; };
+    if (at_ >= 2 && is_digit(at_) && text_[at_ - 1] == ',' && is_digit(at_ - 2))
+      return "numbers have a point, not a comma";
     return is_word(text_[at_]) ? "write \"" + shown() + "\"" : "";
   }
 

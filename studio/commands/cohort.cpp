@@ -23,8 +23,10 @@ struct CohortArguments {
 };
 
 Result<scenes::CourseSpec> course_of(const CohortArguments& arguments) {
-  if (arguments.course.empty() == arguments.experts.empty())
+  if (arguments.course.empty() && arguments.experts.empty())
     return Error{"cohort", "give a course, or a folder of experts with --experts", ""};
+  if (!arguments.course.empty() && !arguments.experts.empty())
+    return Error{"--experts", "is for a cohort without a course, and " + arguments.course + " is given", ""};
   if (!arguments.experts.empty()) return cohort::course_of_folder(arguments.experts);
   return scenes::load_course(arguments.course, compare::measure_keys());
 }

@@ -41,7 +41,7 @@ std::string to_sentence(const Moment& moment, double seconds, double sum, std::s
              " are usual" + (count > 1 ? "; " + std::to_string(count) + " such pauses." : ".");
     case MomentKind::stray_cut:
       return "Cut only where the expert cut: " + number(sum) + " severed elements are ones that the expert left whole" +
-             (count > 1 ? ", " + number(moment.value) + " of them in the cut" : "") + at(moment) + ".";
+             ", " + (count > 1 ? number(moment.value) : "all") + " of them in the cut" + at(moment) + ".";
   }
   return "";
 }

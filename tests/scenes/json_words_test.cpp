@@ -30,6 +30,11 @@ TEST(JsonWords, EachMistakeIsNamedWhereItStands) {
       {"{\"a\": 1\n \"b\": 2}", "t.json:2:2: error: a comma is missing before \""},
       {"[1 2]", "t.json:1:4: error: a comma is missing before 2"},
       {"{a: 1}", "t.json:1:2: error: a key in double quotes must stand here, not a (write \"a\")"},
+      {R"({"a": 6,3})",
+       "t.json:1:9: error: a key in double quotes must stand here, not 3 (numbers have a point, not a comma)"},
+      {"{\u201ca\u201d: 1}",
+       "t.json:1:2: error: a key in double quotes must stand here, not \u201ca\u201d (texts stand in straight double "
+       "quotes, not in curly ones)"},
       {"{'a': 1}",
        "t.json:1:2: error: a key in double quotes must stand here, not ' (texts stand in double quotes, not "
        "in single ones)"},
