@@ -207,9 +207,11 @@ void measure_surface(const Cover& cover, const CheckedMesh& mesh, int threads, F
   const std::int64_t thin = count_groups(mesh.triangle, is_thin);
   if (thin == 0) return;
   const auto worst = std::max_element(to_full.begin(), to_full.end()) - to_full.begin();
+  const double share = double(std::count(is_thin.begin(), is_thin.end(), char{1})) / double(is_thin.size());
   report.findings.push_back({"thin", thin, mesh.vertex[std::size_t(worst)],
                              counted(thin, "part") + " of the organ thinner than about a spacing (" + mm_text(spacing) +
-                                 "), one at " + place_text(mesh.vertex[std::size_t(worst)]),
+                                 "), " + std::to_string(std::lround(100 * share)) + " % of its vertices, one at " +
+                                 place_text(mesh.vertex[std::size_t(worst)]),
                              "none", "a thin part bends too easily or too hard; a smaller sphere radius fills it"});
 }
 
