@@ -280,7 +280,7 @@ rareStep("the shown commands verify and record do what the buttons did", async (
   const infos = ["device.ctpm", "command.ctpm"].map((name) => JSON.parse(ctpm(folder, "info", name, "--json").out));
   for (const { metadata, values } of infos) assert.ok(metadata.source === "igtl-listen" && values.device_samples > 50, JSON.stringify(values));
   // Where it was held at the end; on the way down both depend on when its poses came.
-  const [button, command] = (await Promise.all(["device.ctpm", "command.ctpm"].map(table))).map((rows) => rows.at(-1).force);
+  const [button, command] = (await Promise.all(["device.ctpm", "command.ctpm"].map((name) => table(name)))).map((rows) => rows.at(-1).force);
   console.log(`a device holds ${button} N by the button, ${command} N by its command`);
   assert.ok(button > 0.2 && Math.abs(command / button - 1) < 0.02, `${button} and ${command} N`);
   assert.equal(ctpm(folder, "verify", "command.ctpm").code, 0);
