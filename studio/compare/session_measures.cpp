@@ -200,7 +200,6 @@ void add_cut(Values& values, const SessionTrack& track) {
       values.push_back({&measure, {}, "nothing was cut, or no organ has a surface"});
   };
   add_size(kCutDepth, &session::CutSize::depth, kMillimetres);
-  add_size(kCutAlongBlade, &session::CutSize::along_blade, kMillimetres);
   add_size(kCutLength, &session::CutSize::length, kMillimetres);
   add_size(kCutArea, &session::CutSize::area, kMillimetres * kMillimetres);
 }

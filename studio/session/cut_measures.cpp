@@ -56,49 +56,6 @@ void CutMeasures::add(const cutting::SweptQuad& quad, CutSize& size) const {
                 norm(cross(quad.to2 - quad.to, quad.from2 - quad.to)));
 }
 
-/// Where a line from a place in an organ leaves it, to a tenth of a millimetre.
-Vec3 CutMeasures::leave(std::size_t organ, Vec3 inside, Vec3 way) const {
-  constexpr double kLeast = 1e-4;  // [m]
-  constexpr int kMost = 4096;
-  const double length = norm(way);
-  // No surface is nearer than the nearest one.
-  for (int i = 0; i < kMost && length > 0 && depth_.at(organ, inside) > 0; ++i)
-    inside += std::max(kLeast, std::sqrt(surfaces_[organ]->nearest(inside).squared_distance)) / length * way;
-  return inside;
-}
-
-/// Of what the edge swept in a row, whose nodes ascend from the blade's back over its tip to the heel. `way`: along the
-/// edge, as it was where it last left an organ.
-double CutMeasures::along_blade(const State& state, std::size_t row, Vec3& way) const {
-  double farthest = 0;
-  const auto organ_of = [&](std::size_t node) {
-    return node + 1 < kEdgeNodes ? cutting::swept_quad(state, row, node).organ : -1;
-  };
-  for (std::size_t first = 0, last = 0; first + 1 < kEdgeNodes; first = std::max(last, first + 1)) {
-    const std::int32_t organ = organ_of(first);
-    for (last = first; organ >= 0 && organ_of(last) == organ;) ++last;
-    if (last == first || !surfaces_[std::size_t(organ)]) continue;
-    const auto place = [&](std::size_t node) -> Vec3 { return state.swept[row * kEdgeNodes + node]; };
-    const auto depth = [&](std::size_t node) { return depth_.at(std::size_t(organ), place(node)); };
-    std::size_t highest = last;  // node that is inside
-    while (highest > first && depth(highest) <= 0) --highest;
-    const double inside = depth(highest);
-    if (inside <= 0) continue;
-    const bool leaves = highest < last;
-    // Above what is new the tissue may have been cut before.
-    const Vec3 exit =
-        leaves ? place(highest) + inside / (inside - depth(highest + 1)) * (place(highest + 1) - place(highest))
-               : leave(std::size_t(organ), place(last), norm(way) > 0 ? way : place(last) - place(first));
-    for (std::size_t node = first; node <= highest; ++node) {
-      const Vec3 above = exit - place(node);
-      if (depth(node) <= 0 || norm(above) <= farthest) continue;
-      farthest = norm(above);
-      if (leaves) way = above;
-    }
-  }
-  return farthest;
-}
-
 double CutMeasures::edge_depth(const State& state) const {
   double deepest = 0;
   for (std::size_t node = 0; node < state.edge_organ.size(); ++node) {
@@ -114,13 +71,12 @@ double CutMeasures::edge_depth(const State& state) const {
 void CutMeasures::measure(const State& state) {
   const std::size_t rows = cutting::swept_rows(state);
   const bool goes_on = rows > rows_ && (rows_ == 0 || state.swept[(rows_ - 1) * kEdgeNodes] == last_);
-  if (!goes_on && rows != rows_) rows_ = 0, measured_ = {}, way_ = {}, any_ = false;
+  if (!goes_on && rows != rows_) rows_ = 0, measured_ = {}, any_ = false;
   const auto add_row = [&](std::size_t row, CutSize& size) {
     bool any = false;
     for (std::size_t node = 0; row > 0 && node + 1 < kEdgeNodes; ++node)
       if (const cutting::SweptQuad quad = cutting::swept_quad(state, row, node); quad.organ >= 0)
         any = true, add(quad, size);
-    if (any) size.along_blade = std::max(size.along_blade, along_blade(state, row, way_));
     return any;
   };
   for (; rows_ + 1 < rows; ++rows_) any_ = add_row(rows_, measured_) || any_;

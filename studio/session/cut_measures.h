@@ -18,9 +18,6 @@ struct CutSize {
   double depth = 0;   ///< of the deepest place below the organs' surfaces [m]
   double length = 0;  ///< along the organs' surfaces [m]
   double area = 0;    ///< of one side [m^2]
-  /// How far the blade was in an organ at most: from the deepest place of its edge along it to where it leaves the
-  /// organ's surface [m]. In a cut through half an organ `depth` is small again: the far side is near.
-  double along_blade = 0;
 };
 
 /// Measures cuts on the surface that the blade's edge swept, whatever the lattice.
@@ -41,8 +38,6 @@ class CutMeasures {
 
  private:
   void add(const cutting::SweptQuad& quad, CutSize& size) const;
-  double along_blade(const State& state, std::size_t row, Vec3& way) const;
-  Vec3 leave(std::size_t organ, Vec3 inside, Vec3 way) const;
 
   cutting::RestMap map_;
   cutting::TissueDepth depth_;
@@ -50,7 +45,6 @@ class CutMeasures {
   std::size_t rows_ = 0;                                          ///< measured; those after it may still move
   Vec3 last_;                                                     ///< first place of the last of them [m]
   CutSize measured_;                                              ///< of these
-  Vec3 way_;  ///< along the edge, as it was where it last left an organ
   bool any_ = false;
   std::optional<CutSize> size_;
 };
