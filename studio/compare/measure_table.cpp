@@ -192,9 +192,13 @@ const Measure kCutHausdorff{"cut_path_hausdorff_mm",
                             lower,
                             "the farthest that a point of either path is from the other",
                             kHuttenlocher};
-const Measure kCutDepth{
-    "cut_depth_mm", "depth of the cut", "mm", nearer, "of the deepest place that the blade's edge cut, at rest",
-    kNetwork,       kLengthRounding};
+const Measure kCutDepth{"cut_depth_mm",
+                        "depth of the cut",
+                        "mm",
+                        nearer,
+                        "from the nearest surface to the deepest place that the blade's edge cut, at rest",
+                        kNetwork,
+                        kLengthRounding};
 const Measure kCutLength{"cut_length_mm", "length of the cut", "mm", nearer, "along the surface at rest, of all cuts",
                          kNetwork,        kLengthRounding};
 const Measure kCutArea{
