@@ -9,7 +9,7 @@
 namespace ctpm::contact {
 namespace {
 
-/// Twice the length of the organs, and some more for spheres outside of their surface.
+/// Of the length of the organs: twice it, and some more for spheres outside of their surface.
 constexpr double kTurned = 2.5;
 
 /// A blade that cut nothing for so many ticks has probably done its cut.

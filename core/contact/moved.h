@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "core/model/vec3.h"
 
@@ -11,6 +14,10 @@ namespace ctpm::contact {
 /// More than what rounding adds to bounds that moves are summed up to [m]: what they leave out is outside, not just
 /// about to be.
 inline constexpr double kRounding = 1e-6;
+
+/// A sum of moves begins anew from here on: beside a longer one, as after an explosion, the moves of a tick would be
+/// lost in rounding [m].
+inline constexpr double kLongestPath = 1e3;
 
 /// How far the farthest of some points has moved: from `before` to where they are in `now`, from number `first` on [m].
 /// Infinitely far if any place is not finite, as in a step that is refused.
@@ -24,5 +31,26 @@ inline double farthest_moved(const Vec3Array& before, const Vec3Array& now, std:
   }
   return is_finite ? std::sqrt(squared) : std::numeric_limits<double>::infinity();
 }
+
+/// Spheres of which now and then it is asked how far they have come.
+class WatchedSpheres {
+ public:
+  void add(std::int32_t sphere) { sphere_.push_back(sphere), seen_.emplace_back(); }
+
+  /// `length(by)` of the farthest of their moves since the last call; `position`: of all spheres [m].
+  template <class Length>
+  double farthest_moved(const Vec3Array& position, Length&& length) {
+    double farthest = 0;
+    for (std::size_t i = 0; i < sphere_.size(); ++i) {
+      const Vec3 now = position[std::size_t(sphere_[i])];
+      farthest = std::max(farthest, length(now - std::exchange(seen_[i], now)));
+    }
+    return farthest;
+  }
+
+ private:
+  std::vector<std::int32_t> sphere_;
+  std::vector<Vec3> seen_;  ///< where they were in the last call [m]
+};
 
 }  // namespace ctpm::contact

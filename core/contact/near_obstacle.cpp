@@ -4,16 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/contact/moved.h"
-
 namespace ctpm::contact {
-namespace {
-
-/// A path is begun anew from here on: beside a longer one, as after an explosion, the ways of ticks would be lost in
-/// rounding [m].
-constexpr double kLongestPath = 1e3;
-
-}  // namespace
 
 NearObstacle::NearObstacle(const Model& model, surface::Body& body, const surface::ObstacleShape& shape,
                            CutSurfaces& cuts)
@@ -27,11 +18,9 @@ NearObstacle::NearObstacle(const Model& model, surface::Body& body, const surfac
 }
 
 const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& position) {
-  const double moved = has_begun_ ? farthest_moved(position_, position, std::size_t(organ_.first)) : 0;
-  path_ += moved, ++round_;
-  if (!has_parts_ || version_ != cuts_.version()) find_parts();
+  path_ += farthest_moved(position_, position, std::size_t(organ_.first)), ++round_;
+  if (version_ != cuts_.version()) find_parts();
   if (!(path_ < kLongestPath)) look_at_all();
-  has_begun_ = true;
   for (std::size_t s = 0; s < position_.size(); ++s) position_.set(s, position[std::size_t(organ_.first) + s]);
   found_.clear();
   due_.insert(due_.end(), always_.begin(), always_.end()), always_.clear();
@@ -49,12 +38,12 @@ const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& posi
 
 /// Begins with the parts that there are.
 void NearObstacle::find_parts() {
-  parts_.clear(), regions_.clear(), has_parts_ = false;
+  parts_.clear(), regions_.clear(), version_.reset();
   add_part(body_, nullptr);
   if (cutbody::CutPatches* const patches = cuts_.patches(std::size_t(body_.organ)))
     patches->for_each([&](cutbody::CutPatch& patch) { add_part(patch.body, &patch); });
   due_at_.resize(regions_.size());
-  version_ = cuts_.version(), has_parts_ = true;
+  version_ = cuts_.version();
   look_at_all();
 }
 
@@ -82,8 +71,7 @@ void NearObstacle::add_part(surface::Body& body, cutbody::CutPatch* patch) {
   for (std::size_t group = 0; group < surface.groups().size(); ++group) {
     const surface::NearSurface::Bound& bound = surface.groups()[group];
     Region& region = regions_.emplace_back(Region{part, std::int32_t(group)});
-    surface.for_each_sphere(bound, [&](std::int32_t sphere) { region.sphere.push_back(sphere - organ_.first); });
-    region.seen.resize(region.sphere.size());
+    surface.for_each_sphere(bound, [&](std::int32_t sphere) { region.spheres.add(sphere - organ_.first); });
     // Of its patches and their vertices no more wait than it has corners.
     const auto triangles =
         surface.patches()[std::size_t(bound.last) - 1].last - surface.patches()[std::size_t(bound.first)].first;
@@ -95,11 +83,8 @@ void NearObstacle::add_part(surface::Body& body, cutbody::CutPatch* patch) {
 void NearObstacle::bring_up_to_date(Region& region) {
   if (region.round == round_) return;
   const Vec3* way = shape_.only_way();
-  double farthest = 0;
-  for (std::size_t i = 0; i < region.sphere.size(); ++i) {
-    const Vec3 now = position_[std::size_t(region.sphere[i])], by = now - std::exchange(region.seen[i], now);
-    farthest = std::max(farthest, way != nullptr ? std::abs(dot(by, *way)) : norm(by));
-  }
+  const double farthest = region.spheres.farthest_moved(
+      position_, [&](Vec3 by) { return way != nullptr ? std::abs(dot(by, *way)) : norm(by); });
   if (region.round != 0) region.path += farthest;
   region.round = round_;
 }

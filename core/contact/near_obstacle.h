@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/contact/cut_surfaces.h"
+#include "core/contact/moved.h"
 #include "core/model/model.h"
 #include "core/surface/bodies.h"
 #include "core/surface/obstacle_shape.h"
@@ -50,8 +52,7 @@ class NearObstacle {
   /// A group of triangles of a part, and the spheres that it follows.
   struct Region {
     std::int32_t part, group;
-    std::vector<std::int32_t> sphere{};  ///< within the organ
-    std::vector<Vec3> seen{};            ///< where they were when it was last brought up to date [m]
+    WatchedSpheres spheres{};     ///< as of when it was last brought up to date; within the organ
     double path = 0;              ///< sum of how far the farthest of them moved from one of these to the next [m]
     std::uint32_t round = 0;      ///< in which it was last brought up to date; 0: it never was
     std::vector<Item> waiting{};  ///< heap
@@ -72,11 +73,10 @@ class NearObstacle {
   surface::Body& body_;
   const surface::ObstacleShape& shape_;
   CutSurfaces& cuts_;
-  bool has_begun_ = false, has_parts_ = false;
-  std::uint32_t version_ = 0;
-  Vec3Array position_;       ///< of the organ's spheres in the last round [m]
-  double path_ = 0;          ///< sum over the rounds of how far the farthest of them moved [m]
-  std::uint32_t round_ = 0;  ///< number of rounds
+  std::optional<std::uint32_t> version_;  ///< of the cuts, that parts_ are of
+  Vec3Array position_;                    ///< of the organ's spheres in the last round [m]
+  double path_ = 0;                       ///< sum over the rounds of how far the farthest of them moved [m]
+  std::uint32_t round_ = 0;               ///< number of rounds
   std::vector<Part> parts_;
   std::vector<Region> regions_;
   std::vector<double> due_at_;  ///< of each region: nothing of it is due while path_ is shorter [m]

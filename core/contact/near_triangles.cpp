@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
-
-#include "core/contact/moved.h"
 
 namespace ctpm::contact {
 namespace {
@@ -15,9 +14,6 @@ constexpr double kUsed = 0.5;
 
 /// Of them so many triangles are visited in a round (our choice: some hundredths of a millisecond).
 constexpr std::size_t kMostAtOnce = 384;
-
-/// All is looked at anew from here on: beside a longer path the ways of a tick would be lost in rounding [m].
-constexpr double kLongestPath = 1e3;
 
 }  // namespace
 
@@ -50,28 +46,27 @@ NearTriangles::NearTriangles(const std::vector<BallPart>& whole, std::int32_t sl
 
 /// Begins with the parts that there are.
 void NearTriangles::find_groups() {
-  all_.resize(whole_), groups_.clear(), stretch_ = 1, has_groups_ = has_begun_ = is_listed_ = false;
-  if (cuts_.any())
-    cuts_.for_each([&](cutbody::CutPatch& patch) {
-      all_.push_back({0, cuts_.first_point(kind_, patch), &patch.body.surface, &patch.gathering, &patch});
-    });
+  all_.resize(whole_), groups_.clear(), version_.reset(), is_listed_ = false;
+  stretch_ = 1, all_path_ = std::numeric_limits<double>::infinity();
+  cuts_.for_each([&](cutbody::CutPatch& patch) {
+    all_.push_back({0, cuts_.first_point(kind_, patch), &patch.body.surface, &patch.gathering, &patch});
+  });
   for (std::size_t part = 0; part < all_.size(); ++part) {
     const surface::NearSurface& surface = *all_[part].surface;
     stretch_ = std::max(stretch_, surface.stretch());
     for (std::size_t number = 0; number < surface.groups().size(); ++number) {
       Group& group = groups_.emplace_back(Group{part, number});
       const surface::NearSurface::Bound& bound = surface.groups()[number];
-      surface.for_each_sphere(bound, [&](std::int32_t sphere) { group.sphere.push_back(sphere); });
-      group.seen.resize(group.sphere.size());
+      surface.for_each_sphere(bound, [&](std::int32_t sphere) { group.spheres.add(sphere); });
       group.found.reserve(std::size_t(surface.patches()[std::size_t(bound.last) - 1].last -
                                       surface.patches()[std::size_t(bound.first)].first));
     }
   }
-  version_ = cuts_.version(), has_groups_ = true;
+  version_ = cuts_.version();
 }
 
 void NearTriangles::find(const Reach& reach, double margin, const Vec3Array& position) {
-  if (!has_groups_ || version_ != cuts_.version()) find_groups();
+  if (version_ != cuts_.version()) find_groups();
   follow(reach, position);
   std::size_t visited = 0;
   for (Group& group : groups_) {
@@ -93,20 +88,16 @@ void NearTriangles::find(const Reach& reach, double margin, const Vec3Array& pos
 /// Adds to the paths how far the ball and the spheres have come since the last round.
 void NearTriangles::follow(const Reach& reach, const Vec3Array& position) {
   const double by = reach.beyond(reach_);
-  if (has_begun_) ball_path_ += by, all_path_ += by + stretch_ * farthest_moved(position_, position);
+  ball_path_ += by, all_path_ += by + stretch_ * farthest_moved(position_, position);
   reach_ = reach, position_ = position;
-  if (has_begun_ && all_path_ < kLongestPath) return;
-  has_begun_ = true, ball_path_ = all_path_ = 0;
+  if (all_path_ < kLongestPath) return;
+  ball_path_ = all_path_ = 0;
   for (Group& group : groups_) group.allowed = -1, group.used = group.ball_path = group.all_path = 0;
 }
 
 /// Brings up to date how much of what is allowed a group has used.
 double NearTriangles::find_used(Group& group) {
-  double farthest = 0;
-  for (std::size_t i = 0; i < group.sphere.size(); ++i) {
-    const Vec3 now = position_[std::size_t(group.sphere[i])];
-    farthest = std::max(farthest, norm(now - std::exchange(group.seen[i], now)));
-  }
+  const double farthest = group.spheres.farthest_moved(position_, [](Vec3 by) { return norm(by); });
   const double stretch = 1 + 2 * all_[group.part].surface->groups()[group.number].widen;
   group.used += ball_path_ - std::exchange(group.ball_path, ball_path_) + stretch * farthest;
   group.all_path = all_path_;

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <utility>
+#include <optional>
 #include <vector>
 
 #include "core/contact/cut_surfaces.h"
+#include "core/contact/moved.h"
 #include "core/model/box.h"
 #include "core/model/model.h"
 #include "core/surface/near_surface.h"
@@ -75,11 +76,10 @@ class NearTriangles {
 
  private:
   struct Group {
-    std::size_t part, number;            ///< in all_, and of its surface
-    std::vector<std::int32_t> sphere{};  ///< that it follows
-    std::vector<Vec3> seen{};            ///< where they were when `used` was last found [m]
-    double allowed = -1;                 ///< nothing is missing while no more than this is used [m]
-    double used = 0;                     ///< of it, until the ball and all spheres had come so far: [m]
+    std::size_t part, number;  ///< in all_, and of its surface
+    WatchedSpheres spheres{};  ///< that it follows, as of when `used` was last found
+    double allowed = -1;       ///< nothing is missing while no more than this is used [m]
+    double used = 0;           ///< of it, until the ball and all spheres had come so far: [m]
     double ball_path = 0, all_path = 0;
     std::vector<const surface::NearSurface::Triangle*> found{};
   };
@@ -94,16 +94,16 @@ class NearTriangles {
   const std::int32_t kind_;
   const std::size_t whole_;
   const std::int32_t whole_slots_;
-  bool has_begun_ = false, has_groups_ = false, is_listed_ = false;
-  std::uint32_t version_ = 0;
-  std::vector<BallPart> all_;    ///< those of whole organs, and all patches of cuts
-  std::vector<Group> groups_;    ///< of all parts
-  double stretch_ = 1;           ///< a vertex moves at most so many times as far as the farthest sphere
-  Reach reach_{Vec3{}, 0};       ///< in the last round
-  Vec3Array position_;           ///< of the spheres in it [m]
-  double ball_path_ = 0;         ///< sum of how far the reach went beyond that of the round before [m]
-  double all_path_ = 0;          ///< the same, and of how far the vertices of the farthest sphere moved [m]
-  std::vector<BallPart> parts_;  ///< those of whole organs, and patches of which something was found
+  std::optional<std::uint32_t> version_;  ///< of the cuts, that groups_ are of
+  bool is_listed_ = false;                ///< what was found, in parts_ and found_
+  std::vector<BallPart> all_;             ///< those of whole organs, and all patches of cuts
+  std::vector<Group> groups_;             ///< of all parts
+  double stretch_ = 1;                    ///< a vertex moves at most so many times as far as the farthest sphere
+  Reach reach_{Vec3{}, 0};                ///< in the last round
+  Vec3Array position_;                    ///< of the spheres in it [m]
+  double ball_path_ = 0;                  ///< sum of how far the reach went beyond that of the round before [m]
+  double all_path_ = 0;                   ///< the same, and of how far the vertices of the farthest sphere moved [m]
+  std::vector<BallPart> parts_;           ///< those of whole organs, and patches of which something was found
   std::vector<Found> found_;
   std::int32_t slots_ = 0;
 };

@@ -99,19 +99,19 @@ double CutPatch::opening(std::int32_t vertex) {
   return std::max(0.0, dot(apart, body.facets.normal(vertex, place)));
 }
 
+/// What a thread that makes patches binds them with.
+struct CutPatches::Binder {
+  std::optional<SideBinding> binding;     ///< once it was needed
+  std::vector<CutGrid::NodeBox> changed;  ///< what it has not been told of
+
+  SideBinding& up_to_date(const Model& model, const CutGrid& grid) {
+    if (!binding) binding.emplace(model, grid), changed.clear();
+    for (const CutGrid::NodeBox& box : std::exchange(changed, {})) binding->update(box);
+    return *binding;
+  }
+};
+
 struct CutPatches::Parts {
-  /// What a thread that makes patches binds them with.
-  struct Binder {
-    std::optional<SideBinding> binding;     ///< once it was needed
-    std::vector<CutGrid::NodeBox> changed;  ///< what it has not been told of
-
-    SideBinding& up_to_date(const Model& model, const CutGrid& grid) {
-      if (!binding) binding.emplace(model, grid), changed.clear();
-      for (const CutGrid::NodeBox& box : std::exchange(changed, {})) binding->update(box);
-      return *binding;
-    }
-  };
-
   Parts(const Model& model, std::size_t organ) : grid(model, organ) {
     const CutGrid::Node bins = bins_of(grid);
     by_bin.resize(std::size_t(bins[0] * bins[1] * bins[2] + 1));
@@ -137,14 +137,14 @@ CutPatches::CutPatches(CutPatches&&) noexcept = default;
 void CutPatches::prepare() {
   if (parts_) return;
   parts_ = std::make_unique<Parts>(model_, organ_);
-  for (Parts::Binder* binder : {&parts_->ahead, &parts_->asked}) (void)binder->up_to_date(model_, parts_->grid);
+  for (Binder* binder : {&parts_->ahead, &parts_->asked}) (void)binder->up_to_date(model_, parts_->grid);
 }
 
 void CutPatches::follow(std::shared_ptr<const State> state) {
   const bool was_followed = parts_ && parts_->seen;
   if (cutting::sweeps_same(was_followed ? *parts_->seen : State{}, *state, std::int32_t(organ_))) {
     if (was_followed)
-      for (Parts::Binder* binder : {&parts_->ahead, &parts_->asked})
+      for (Binder* binder : {&parts_->ahead, &parts_->asked})
         if (binder->binding) binder->binding->forget();
     return;
   }
@@ -153,7 +153,7 @@ void CutPatches::follow(std::shared_ptr<const State> state) {
     parts_->seen = std::move(state);
     (void)parts_->grid.update(*parts_->seen);
     const CutGrid::NodeBox changed = parts_->grid.take_changed();
-    for (Parts::Binder* binder : {&parts_->ahead, &parts_->asked}) binder->changed.push_back(changed);
+    for (Binder* binder : {&parts_->ahead, &parts_->asked}) binder->changed.push_back(changed);
     cover();
   } catch (...) {
     parts_.reset(), covered_.clear();  // they may be half done
@@ -162,15 +162,9 @@ void CutPatches::follow(std::shared_ptr<const State> state) {
 }
 
 void CutPatches::make_all(const std::stop_token& stop) {
-  if (!is_cut() || stop.stop_requested()) return;
-  Parts::Binder& binder = parts_->ahead;
-  try {
-    SideBinding& binding = binder.up_to_date(model_, parts_->grid);
-    for (Covered& covered : covered_)
-      if (!stop.stop_requested()) (void)make_once(covered, binding);
-  } catch (...) {
-    binder.binding.reset();  // it may be half done
-    throw;
+  for (Covered& covered : covered_) {
+    if (stop.stop_requested()) return;
+    (void)make_once(covered, parts_->ahead);
   }
 }
 
@@ -178,32 +172,24 @@ void CutPatches::make_all(const std::stop_token& stop) {
 void CutPatches::make_rest() {
   if (are_made_) return;
   const InStage stage(watch_, Stage::cut_surface);
-  const auto is_made = [](Covered& covered) {
-    return std::atomic_ref(covered.making).load(std::memory_order_acquire) == Making::done;
-  };
-  Parts::Binder& binder = parts_->asked;
-  try {
-    for (auto covered = covered_.rbegin(); covered != covered_.rend(); ++covered)
-      if (!is_made(*covered)) (void)make_once(*covered, binder.up_to_date(model_, parts_->grid));
-    for (Covered& covered : covered_)
-      while (!is_made(covered) && !make_once(covered, binder.up_to_date(model_, parts_->grid)))
-        std::atomic_ref(covered.making).wait(Making::now, std::memory_order_acquire);
-  } catch (...) {
-    binder.binding.reset();  // it may be half done
-    throw;
-  }
+  for (auto covered = covered_.rbegin(); covered != covered_.rend(); ++covered)
+    (void)make_once(*covered, parts_->asked);
+  for (Covered& covered : covered_)
+    while (!make_once(covered, parts_->asked))
+      std::atomic_ref(covered.making).wait(Making::now, std::memory_order_acquire);
   find_bins();
   are_made_ = true;
 }
 
 /// Makes the patches of a block. Returns whether they are made; else another thread makes them now.
-bool CutPatches::make_once(Covered& covered, SideBinding& binding) {
+bool CutPatches::make_once(Covered& covered, Binder& binder) {
   const std::atomic_ref making(covered.making);
   Making was = Making::not_yet;
   if (!making.compare_exchange_strong(was, Making::now, std::memory_order_acquire)) return was == Making::done;
   try {
-    covered.patches = make(covered.block, binding);
+    covered.patches = make(covered.block, binder.up_to_date(model_, parts_->grid));
   } catch (...) {
+    binder.binding.reset();  // it may be half done
     making.store(Making::not_yet, std::memory_order_release), making.notify_all();
     throw;
   }
@@ -241,22 +227,19 @@ void CutPatches::begin(const Vec3Array& position) { position_ = &position, ++rou
 
 /// Finds the bins of the spheres that each patch follows.
 void CutPatches::find_bins() {
-  bounded_.clear(), bins_of_patches_.clear(), found_in_ = 0;
+  bounded_.clear(), found_in_ = 0;
   const auto first_sphere = model_.organs[organ_].first;
-  std::vector<Index> seen(parts_->by_bin.size(), -1);  // the last patch that followed a sphere in it
+  std::vector<const CutPatch*> seen(parts_->by_bin.size());  // the last patch that followed a sphere in it
   for (Covered& covered : covered_)
     for (const auto& patch : covered.patches) {
       const surface::NearSurface& surface = patch->body.surface;
       if (surface.empty()) continue;
-      Bounded bounded{patch.get(), bins_of_patches_.size(), 0};
+      Bounded& bounded = bounded_.emplace_back(Bounded{patch.get()});
       for (const surface::NearSurface::Bound& group : surface.groups())
         surface.for_each_sphere(group, [&](std::int32_t sphere) {
           const Index bin = parts_->bin_of_sphere[std::size_t(sphere - first_sphere)];
-          if (std::exchange(seen[std::size_t(bin)], Index(bounded_.size())) != Index(bounded_.size()))
-            bins_of_patches_.push_back(bin);
+          if (std::exchange(seen[std::size_t(bin)], patch.get()) != patch.get()) bounded.bins.push_back(bin);
         });
-      bounded.last_bin = bins_of_patches_.size();
-      bounded_.push_back(bounded);
     }
 }
 
@@ -274,9 +257,9 @@ void CutPatches::find_boxes() {
     for (const Index sphere : spheres) ranges_[bin].add(moved(sphere));
   }
   for (Bounded& bounded : bounded_) {
-    Box range = ranges_[std::size_t(bins_of_patches_[bounded.first_bin])];
-    for (std::size_t b = bounded.first_bin + 1; b < bounded.last_bin; ++b) {
-      const Box& other = ranges_[std::size_t(bins_of_patches_[b])];
+    Box range = ranges_[std::size_t(bounded.bins.front())];
+    for (const Index bin : bounded.bins) {
+      const Box& other = ranges_[std::size_t(bin)];
       range.add(other.low), range.add(other.high);
     }
     const surface::NearSurface& surface = bounded.patch->body.surface;

@@ -57,8 +57,8 @@ class CutPatches {
   /// Follows the swept surface of `state`. Where it is the same in this organ, patches stay, and what would make new
   /// ones fast is forgotten.
   void follow(std::shared_ptr<const State> state);
-  /// Makes patches until it is told to stop. One other thread may ask for patches meanwhile: that helps to make them,
-  /// for which spheres they follow, and so how far they may move, is known only when all are made.
+  /// Makes patches until it is told to stop. One other thread may ask for patches meanwhile, and helps to make them:
+  /// what spheres they follow, and so how far they may move, is known only when all are made.
   void make_all(const std::stop_token& stop);
   bool is_cut() const { return !covered_.empty(); }
   /// For each sphere of the organ the lowest node of its piece; -1: it is in none (sphere_count, or empty).
@@ -84,6 +84,7 @@ class CutPatches {
   CutPatch* patch(Index block, std::int32_t vertex);
 
  private:
+  struct Binder;
   struct Parts;
   enum class Making : std::uint8_t { not_yet, now, done };
   /// A block that is covered.
@@ -93,15 +94,14 @@ class CutPatches {
     std::vector<std::unique_ptr<CutPatch>> patches{};
     std::uint32_t round = 0;  ///< in which they were placed
   };
-  /// A patch, the bins of the spheres that it follows (in bins_of_patches_), and within what box it is now [m].
   struct Bounded {
     CutPatch* patch;
-    std::size_t first_bin, last_bin;
-    Box box{Vec3{}};
+    std::vector<Index> bins{};  ///< of the spheres that it follows
+    Box box{Vec3{}};            ///< within which it is now [m]
   };
   void cover();
   void make_rest();
-  bool make_once(Covered& covered, SideBinding& binding);
+  bool make_once(Covered& covered, Binder& binder);
   std::vector<std::unique_ptr<CutPatch>> make(Index block, SideBinding& binding);
   void find_bins();
   void find_boxes();
@@ -118,7 +118,6 @@ class CutPatches {
   std::vector<std::int32_t> index_of_;  ///< of a block in covered_; -1: not covered (block_count, or empty)
   bool are_made_ = false;               ///< all patches
   std::vector<Bounded> bounded_;        ///< of them, by block
-  std::vector<Index> bins_of_patches_;
   std::uint32_t round_ = 0, found_in_ = 0;
   const Vec3Array* position_ = nullptr;
   std::vector<Box> ranges_;  ///< of the displacements of each bin's spheres in round `found_in_` [m]

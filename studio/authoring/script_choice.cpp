@@ -89,9 +89,12 @@ std::optional<ScriptChoice> choose_script(const scenes::SceneSpec& scene, const 
   for (scenes::ScriptPlace place : kPlaces) {
     if (!try_at(place)) return std::nullopt;
     // Where an organ gives way before it is cut, a blade that is less deep may cut it.
-    const bool is_usual = place.along == 0;
-    for (const double share : kShallower)
-      if (place.depth_share = share; best->drags && (is_usual || best->works()) && !try_at(place)) return std::nullopt;
+    const bool goes_on = place.along == 0 || best->works();
+    for (const double share : kShallower) {
+      if (!goes_on || !best->drags) break;
+      place.depth_share = share;
+      if (!try_at(place)) return std::nullopt;
+    }
     if (best->works()) return best;
   }
   for (const scenes::ScriptPlace& place : kThrough) {
