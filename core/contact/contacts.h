@@ -66,8 +66,8 @@ class Contacts {
 
   /// Does at once what the first tick with a blade needs.
   void prepare() { cuts_.prepare(); }
-  /// Follows what is cut, at the start of a tick from `state`. `cuts`: a hand holds a blade.
-  void begin_tick(const State& state, bool cuts) { cuts_.begin_tick(state, cuts); }
+  /// Opens and follows what is cut, at the start of a tick from `state`. `cuts`: a hand holds a blade.
+  void begin_tick(State& state, bool cuts) { cuts_.begin_tick(state, cuts); }
 
   /// Reserves memory for all that can be touched, so that a tick does not allocate unless it touches a cut.
   void reserve(Touched& touched) const;

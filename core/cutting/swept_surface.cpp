@@ -111,7 +111,9 @@ void add_swept(State& state, const Front& exact_from, const Front& exact_to, con
   const auto is_asked = [&](std::size_t n) {
     return state.swept_organ[last + n] != 0 || (n > 0 && state.swept_organ[last + n - 1] != 0);
   };
-  bool goes_on = rows > 0;
+  // A sheet of which the last row is open, or will be, does not move: another one goes on from it.
+  const auto opened = std::size_t(std::max(state.open_cuts.rows, state.opening_cuts.rows));
+  bool goes_on = rows > opened;
   for (std::size_t n = 0; n < kEdgeNodes && goes_on; ++n)
     goes_on = !borders(newly, n) || !is_asked(n) || state.swept[last + n] == from[n];
   for (std::size_t n = 0; n < kEdgeNodes && goes_on; ++n)

@@ -58,7 +58,7 @@ Vec3 stored_place(Vec3 rest);
 
 /// Adds what the front swept while it went `from`-`to`. Where the last row and the new one lie in line, the row is
 /// moved instead of adding another: rows are at most 1 mm apart, and leave out nothing that is farther than some
-/// hundredths of a millimetre from the surface between them.
+/// hundredths of a millimetre from the surface between them. Rows that are open, or will be, stay as they are.
 void add_swept(State& state, const Front& from, const Front& to, const NewlySwept& newly);
 
 /// Boxes around what was newly swept in each row but the last one, which may still move [m]; none where nothing was.

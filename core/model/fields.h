@@ -64,6 +64,16 @@ void for_each_field(State_& s, Visit&& visit) {
     give("last_inputs.second.world_from_tool", s.last_inputs.second.world_from_tool, any);
     give("last_inputs.second.buttons", s.last_inputs.second.buttons, any);
   }
+  // Likewise only once something was cut that can be touched.
+  if (!std::is_const_v<State_> || s.open_cuts != TouchedCuts{} || s.opening_cuts != TouchedCuts{} ||
+      s.opening_cuts_at != 0) {
+    const FieldMeaning severed = bits(1).per(EntryOf::axial).or_empty();
+    give("open_cuts.rows", s.open_cuts.rows, not_negative);
+    give("open_cuts.axial_severed", s.open_cuts.axial_severed, severed);
+    give("opening_cuts.rows", s.opening_cuts.rows, not_negative);
+    give("opening_cuts.axial_severed", s.opening_cuts.axial_severed, severed);
+    give("opening_cuts.at", s.opening_cuts_at, within(0, 1e15));
+  }
 }
 
 template <class Tool_, class Visit>

@@ -12,6 +12,13 @@ namespace ctpm {
 /// Nodes along a blade's edge, at equal distances from the tip to the heel.
 inline constexpr std::size_t kEdgeNodes = 33;
 
+/// Cuts as they are touched: the first rows of the swept surface, and the elements that were severed by then.
+struct TouchedCuts {
+  std::int32_t rows = 0;
+  std::vector<std::uint8_t> axial_severed;  ///< 1: severed; empty if none is known to be          (axial_count)
+  friend bool operator==(const TouchedCuts&, const TouchedCuts&) = default;
+};
+
 /// Everything that the next tick depends on, to the bit. The velocity is also the warm start of the implicit solve.
 struct State {
   std::int64_t tick = 0;   ///< ticks done
@@ -34,6 +41,9 @@ struct State {
   /// For each node of a row: 1 + the organ in which the front went from the row before to this one, between this node
   /// and the next, through tissue that was whole; 0: it did not                              (as many as `swept`)
   std::vector<std::uint8_t> swept_organ;
+  TouchedCuts open_cuts;             ///< those that are touched; empty where nothing can touch cuts
+  TouchedCuts opening_cuts;          ///< those that will be; without rows: none
+  std::int64_t opening_cuts_at = 0;  ///< tick that begins with them in the place of open_cuts; 0: none does
   /// Points of the tissue that are touched, ascending. With n = Model::touchable_count(), [0, n) are touched by the
   /// first hand's ball, [n, 2 n) by tissue, [(2 + i) n, (3 + i) n) by obstacle i, where there are two hands the next n
   /// by the second one's ball, and those of cuts follow (cutbody) (touched_count)

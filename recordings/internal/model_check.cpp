@@ -380,6 +380,15 @@ void check_edge(Checker& check, const Model& model, const State& state) {
     return;
   const std::string problem = problem_of_swept(state);
   check.require(problem.empty(), "swept", problem);
+  const auto rows = std::int64_t(swept.x.size() / kEdgeNodes);
+  for (const auto& [name, cuts] : {std::pair{"open_cuts", &state.open_cuts}, {"opening_cuts", &state.opening_cuts}}) {
+    check.require(cuts->rows <= rows, name, "has more rows than the swept surface");
+    check.require(cuts->rows > 0 || cuts->axial_severed.empty(), name, "knows severed elements of no cut");
+  }
+  check.require((state.opening_cuts_at > 0) == (state.opening_cuts.rows > 0), "opening_cuts.at",
+                "must be set exactly where rows open");
+  check.require(state.opening_cuts_at == 0 || state.opening_cuts.rows >= state.open_cuts.rows, "opening_cuts",
+                "has fewer rows than are open");
 }
 
 Errors check_state(const Model& model, const State& state) {

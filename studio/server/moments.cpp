@@ -19,7 +19,7 @@ std::size_t bytes_of(const State& s) {
   for (const Vec3Array* a : {&s.position, &s.velocity, &s.acceleration, &s.grip}) bytes += 24 * a->size();
   bytes += 8 * (s.kelvin_elongation.size() + s.kelvin_dent.size()) + 4 * s.touched.size();
   return bytes + s.axial_severed.size() + s.constraint_severed.size() + s.angle_severed.size() +
-         s.axial_crossing.size();
+         s.axial_crossing.size() + s.open_cuts.axial_severed.size() + s.opening_cuts.axial_severed.size();
 }
 
 std::size_t memory_for_states() {

@@ -9,7 +9,8 @@
 
 namespace ctpm::testing {
 
-/// Cuts the first organ along the way of a front from 0 to 1: severs its elements and adds to the swept surface.
+/// Cuts the first organ along the way of a front from 0 to 1: severs its elements and adds to the swept surface. The
+/// cut is open.
 inline void cut_along(const Model& model, const std::function<cutting::Front(double)>& way, State& state) {
   constexpr int kSteps = 60;
   cutting::NewlySwept newly;
@@ -20,6 +21,7 @@ inline void cut_along(const Model& model, const std::function<cutting::Front(dou
     (void)sever(model, from, to, state, crossings);
     cutting::add_swept(state, from, to, newly);
   }
+  state.open_cuts = {std::int32_t(cutting::swept_rows(state)), state.axial_severed};
 }
 
 /// A block with two cuts along y through all of it, up to `end` [m]. Between them is a strip of a seventh of a spacing

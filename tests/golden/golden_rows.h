@@ -10,7 +10,7 @@ namespace ctpm::testing {
 /// Hashes of one golden session under one physics revision.
 struct GoldenRow {
   std::string_view session;           ///< structure and integrator as scenes name them; retired names stay
-  std::array<std::uint64_t, 4> hash;  ///< of State after 100, 200, 300 and 400 ticks
+  std::array<std::uint64_t, 4> hash;  ///< of State after 100, 200, 300 and 400 ticks, beside those in which it waits
 };
 
 /// The golden sessions of one physics revision; from revision 8 on only those that are new or that changed.
@@ -305,6 +305,33 @@ inline constexpr GoldenRow kGoldenRevision20[] = {
     {"fine mesh, sdirk2", {0xfbc106aac38946d1, 0x970261862069dfd3, 0x416142254c0f4879, 0xbed2098026f775ab}},
 };
 
+inline constexpr GoldenRow kGoldenRevision21[] = {
+    {"long strip, auto", {0x6807633ce95d942c, 0xeecaa8ada689fdf3, 0x2da9c25789907454, 0xce81b4d15a1017f2}},
+    {"long strip, sdirk2", {0x8c6d2a8332d9ea84, 0xcc0315ee2ddde686, 0x8b4640d5c2e6e437, 0xd4c8c382916ee39b}},
+    {"skinned, auto", {0xf3bffb4aa45235bf, 0xbbffa7c592df0094, 0x59b8634aa617a94a, 0x7ddf3f654e624099}},
+    {"skinned, sdirk2", {0xb9afbe8c4d1d969f, 0x7d1de38ecca79ea1, 0xa56f73ff2ab4aef5, 0x5ed1be4664e023fc}},
+    {"soft and skinned, auto", {0x2167393320c256c0, 0x73785f893fc58b4a, 0xfe88867b487f85f0, 0x599e0262f33a0e94}},
+    {"touched cut, auto", {0xff890838b753aeda, 0x78301d38166a0c4d, 0x29e81dc3d3f77047, 0xebd688f0a064404d}},
+    {"touched cut, sdirk2", {0xfff94fb4d8b04cb2, 0x7703fb4052940586, 0x9012ea3de1692826, 0x90f8c6f5d5fb0608}},
+    {"soft and touched cut, auto", {0xd5f884a9e30aa820, 0xafa633d77a236732, 0xd5ca7a71f85027a6, 0x645c53ed82d68dc2}},
+    {"touched slice, auto", {0xc651e673aaed1229, 0x2a3c2e166b38947c, 0x51b304d05ff20876, 0x7260944cf4ed5a67}},
+    {"touched slice, sdirk2", {0x7f2b67ca4ea3f792, 0x86c205262c51386a, 0x447dc71fb479b54d, 0xce1855b2801aecf8}},
+    {"soft and touched slice, auto", {0x0aebf3b27fba0d04, 0x28707119c6812995, 0x52686a24bff63cc8, 0x10aa29c91f185a0f}},
+    {"touched tear, auto", {0xc651e673aaed1229, 0x2679cc6654cc26d9, 0xeb6efd34f661fe4c, 0xdf26a7625e2e0229}},
+    {"touched tear, sdirk2", {0x7f2b67ca4ea3f792, 0xa912a4c9e7e7fbf3, 0x9faa708316f21c01, 0x509bd87d7fbfed02}},
+    {"touched bridge, auto", {0xc651e673aaed1229, 0x348aba0d485e58c2, 0x7a4ab7e11cb71495, 0x955e27c215c1a3c7}},
+    {"touched bridge, sdirk2", {0x7f2b67ca4ea3f792, 0x47c6cc37ed67f2fe, 0x714ee4e96e5f6bc4, 0x78c4cfee8ab5aaee}},
+    {"touched plane, auto", {0x05c70d5366a0e86f, 0x811278d67fdedd81, 0x3879200a256b26f5, 0xaaa9d897f4a0d320}},
+    {"touched plane, sdirk2", {0x943a47562b9eb657, 0x4a415563d06b8cf7, 0xc35ccfdde2e20a57, 0xf78121f4fa222fcd}},
+    {"touched edge, auto", {0x61cbf0e6f2fb833a, 0xbfae9e61761177f6, 0xa4cd0700f625bbb6, 0x80e3638ae709905c}},
+    {"touched edge, sdirk2", {0x4e25e343a3f4899d, 0xbf3af1d31629873b, 0x1fb4497996d73104, 0xb6a0fd4aa9cb99ef}},
+    {"two hands, auto", {0xc6c1d85d1512e690, 0x6d0f09b25ab908fc, 0x19f859d1a0c277d8, 0xe5fb21f6d7ae9b77}},
+    {"two hands, sdirk2", {0x2dd376e2afb8ca46, 0x4b8af5b88a0ea494, 0xdc0d42591de018d5, 0x9426a95d4a6889ea}},
+    {"soft and two hands, auto", {0x1180d4b4680c1d33, 0x782c33232b01b77d, 0x71c364b076b3e6ee, 0xd6215639b50b0831}},
+    {"fine mesh, auto", {0x00c4c498b1ca5a4c, 0x61b0fff1042a87b0, 0x70ee73baaa9e928d, 0xb521f5e2d8d4ddb2}},
+    {"fine mesh, sdirk2", {0xfbc106aac38946d1, 0x970261862069dfd3, 0x416142254c0f4879, 0xc1e7799b03e2deae}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},   {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189},   {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
@@ -316,6 +343,7 @@ inline constexpr GoldenRevision kGoldenRevisions[] = {
     {15, kGoldenRevision15, 0xc7644e74b0d461e5}, {16, kGoldenRevision16, 0x304838863b606220},
     {17, kGoldenRevision17, 0x47d495b0831911b},  {18, kGoldenRevision18, 0x519dbe9952522cb},
     {19, kGoldenRevision19, 0xbcff56bc1d9b0f37}, {20, kGoldenRevision20, 0xc16065d9ee0c4396},
+    {21, kGoldenRevision21, 0x369412ffb9ec0589},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/contact/open_cuts.h"
 #include "core/stepping/step.h"
 #include "recordings/state_hash.h"
 #include "tests/core/skinned_block.h"
@@ -42,10 +43,12 @@ inline Inputs touched_slice_inputs(int tick) {
   return inputs;
 }
 
-/// As touched_slice_inputs(), but the scalpel leaves a bridge. Tissue that sags keeps some elements in it: it holds.
+/// As touched_slice_inputs(), but the scalpel leaves a bridge. Tissue that sags keeps some elements in it: it holds,
+/// and the slice hangs on it when the ball comes.
 inline Inputs touched_tear_inputs(int tick) {
   Inputs inputs = touched_slice_inputs(tick);
   if (tick > 100 && tick < 110) inputs.tool = -1;
+  if (tick >= 200) inputs.position.z -= 0.014;
   return inputs;
 }
 
@@ -105,7 +108,7 @@ inline Inputs crumbs_inputs(int tick) {
 /// Later a ball is in the way of what rises.
 inline Inputs strip_inputs(int tick) {
   Inputs inputs;
-  if (tick >= 300) inputs.tool = 0, inputs.position = {0.012, 0.06, 0.2};
+  if (tick >= 300) inputs.tool = 0, inputs.position = {-0.014, 0.068, 0.07};
   if (tick >= 200) return inputs;
   const double side = tick < 100 ? -1 : 1, along = -0.09 + 0.002 * (tick % 100);
   inputs.tool = 1;
@@ -168,16 +171,19 @@ inline Model make_skinned_model(int ni, int nj, int nk, bool is_soft, std::int32
 }
 
 /// A block in which strip_inputs() cut a strip a seventh of a spacing thick, which no sphere is in. All that is beside
-/// it is held; the end that it hangs on rises, and so it comes under an obstacle that is far from that.
+/// it is held; the end that it hangs on rises when both cuts are open, and so it comes under an obstacle that is far
+/// from that.
 inline Model make_strip_model() {
+  constexpr double kBothOpen = 0.1 + 2 * contact::kOpensAfter;  // [s]
   Model model = make_skinned_model(4, 14, 3, false);
   model.obstacles = {{"above", ObstacleKind::box, {0, -0.04, 0.05}, {1, 0, 0, 0}, {0.01, 0.04, 0.01}}};
   for (std::size_t i = 0; i < model.sphere_count(); ++i) {
     model.held_axes[i] = model.rest_position[i].y < 0.036 ? kAnchored : 0;
     if (model.held_axes[i] == kAnchored) continue;
-    model.loads.sphere.push_back(std::int32_t(i));
-    model.loads.force.push_back(model.mass[i] * Vec3{0, 0, 40});
-    model.loads.start.push_back(0.2), model.loads.ramp.push_back(0);
+    for (const auto& [lift, start] : {std::pair{9.81, 0.0}, {30.0, kBothOpen}}) {
+      model.loads.sphere.push_back(std::int32_t(i)), model.loads.start.push_back(start);
+      model.loads.force.push_back(model.mass[i] * Vec3{0, 0, lift}), model.loads.ramp.push_back(0);
+    }
   }
   return model;
 }
@@ -190,8 +196,15 @@ inline void use_first_choice(Model& model) {
   model.solver.substeps = is_explicit ? std::int32_t(needed) : 1;
 }
 
+/// Whether a session that is in a tick of `ticks` waits until its cuts have opened: when a ball is taken, and at the
+/// end of a session of two hands.
+inline bool awaits_cuts(const Model& model, const State& state, const Inputs& inputs, int tick, int ticks) {
+  if (state.opening_cuts_at == 0) return false;
+  return (inputs.tool == 0 && state.last_inputs.tool != 0) || (model.hands > 1 && tick >= ticks * 19 / 20);
+}
+
 /// Simulates `ticks` ticks, sampled evenly from the 400 of a golden session, of a Model with a ball, a scalpel and
-/// perhaps a pin. Without an integrator: see use_first_choice().
+/// perhaps a pin, and those in which it waits. Without an integrator: see use_first_choice().
 inline GoldenRun run_golden(Model model, int ticks, std::optional<Integrator> integrator,
                             const stepping::StepperOptions& options = {}, Inputs (*inputs_at)(int) = golden_inputs) {
   model.gravity = {0, 0, -9.81};
@@ -207,6 +220,9 @@ inline GoldenRun run_golden(Model model, int ticks, std::optional<Integrator> in
       const Vec3 held = model.rest_position[std::size_t(model.tools[2].sphere)];
       inputs.tool = 2, inputs.position = held + Vec3{0, 0, 1e-5 * (tick - ticks * 3 / 4)};
     }
+    if (awaits_cuts(model, state, inputs, tick, ticks))
+      while (state.opening_cuts_at > 0)
+        run.is_good = stepper.step(state, inputs).status <= stepping::StepStatus::not_converged && run.is_good;
     const stepping::StepReport report = stepper.step(state, inputs);
     run.is_good = run.is_good && report.status <= stepping::StepStatus::not_converged;
     run.severed += report.severed, run.contacts += report.contacts;

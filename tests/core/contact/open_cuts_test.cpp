@@ -1,0 +1,93 @@
+// When cuts open.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+
+#include "core/contact/open_cuts.h"
+#include "core/cutting/swept_surface.h"
+#include "tests/core/cut_blocks.h"
+
+namespace ctpm {
+namespace {
+
+std::int32_t rows_of(const State& state) { return std::int32_t(cutting::swept_rows(state)); }
+
+cutting::Front front_at(double x, double y) { return testing::straight_front({x, y, 0.006}, {x, y, 0.06}); }
+
+class OpenCuts : public ::testing::Test {
+ protected:
+  OpenCuts() {
+    cut_along(0.0013);
+    whole_ = {rows_of(state_), state_.axial_severed};
+  }
+
+  /// Across the block along y; it is not open yet.
+  void cut_along(double x) {
+    const TouchedCuts open = state_.open_cuts;
+    testing::cut_along(
+        model_, [&](double t) { return front_at(x, -0.06 + 0.12 * t); }, state_);
+    state_.open_cuts = open;
+  }
+
+  void put_blade_in_last_row() {
+    const std::size_t last = state_.swept.size() - kEdgeNodes;
+    for (std::size_t n = 0; n < kEdgeNodes; ++n) state_.blade_trail.set(n, state_.swept[last + n]);
+  }
+
+  void go_on(std::int64_t ticks, bool holds_blade) {
+    for (const std::int64_t end = state_.tick + ticks; state_.tick < end; ++state_.tick)
+      contact::follow_open_cuts(model_, holds_blade, state_);
+  }
+
+  const Model model_ = testing::block_to_cut(8, 8, 4, 0.004);
+  const std::int64_t after_ = std::llround(contact::kOpensAfter / model_.tick);
+  State state_ = rest_state(model_);
+  TouchedCuts whole_;
+};
+
+TEST_F(OpenCuts, ACutOpensSomeTimeAfterTheBladeHasLeftIt) {
+  put_blade_in_last_row();
+  go_on(3 * after_, true);
+  EXPECT_EQ(state_.opening_cuts_at, 0) << "the blade is in it";
+  const std::int64_t left = state_.tick;
+  go_on(1, false);
+  EXPECT_EQ(state_.opening_cuts, whole_);
+  EXPECT_EQ(state_.opening_cuts_at, left + after_);
+  go_on(after_ - 1, false);
+  EXPECT_EQ(state_.open_cuts.rows, 0);
+  go_on(1, false);
+  EXPECT_EQ(state_.open_cuts, whole_);
+  EXPECT_EQ(state_.opening_cuts_at, 0);
+}
+
+TEST_F(OpenCuts, WhatIsCutMeanwhileDoesNotKeepThemClosed) {
+  go_on(after_ / 2, false);
+  cut_along(0.0113);
+  go_on(after_ / 2 + 1, false);
+  EXPECT_EQ(state_.open_cuts, whole_);
+  EXPECT_EQ(state_.opening_cuts, (TouchedCuts{rows_of(state_), state_.axial_severed}));
+  EXPECT_EQ(state_.opening_cuts_at, 2 * after_);
+}
+
+TEST_F(OpenCuts, ABladeThatGoesOnNeitherClosesNorMovesThem) {
+  go_on(after_ + 1, false);
+  put_blade_in_last_row();
+  const Vec3Array before = state_.swept;
+  cutting::NewlySwept newly;
+  newly.fill(1), newly.back() = 0;
+  // In line with the last row, which would be moved.
+  cutting::add_swept(state_, front_at(0.0013, 0.06), front_at(0.0013, 0.0601), newly);
+  ASSERT_GT(state_.swept.size(), before.size());
+  for (std::size_t n = 0; n < before.size(); ++n) ASSERT_EQ(state_.swept[n], before[n]) << n;
+  put_blade_in_last_row();
+  go_on(after_, true);
+  EXPECT_EQ(state_.open_cuts, whole_);
+  EXPECT_EQ(state_.opening_cuts_at, 0) << "the blade is in what is new";
+  go_on(1, false);
+  EXPECT_EQ(state_.opening_cuts.rows, rows_of(state_));
+}
+
+}  // namespace
+}  // namespace ctpm
