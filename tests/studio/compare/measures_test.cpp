@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/cutting/cutting.h"
 #include "core/model/box.h"
 #include "studio/compare/advice.h"
 #include "studio/compare/measure_table.h"
@@ -120,6 +121,9 @@ TEST_F(Measures, CutsAreMeasuredOnTheSweptSurfaceToAHundredthOfAMillimetre) {
   EXPECT_NEAR(measures.size()->depth, 0.007, 1e-5);
   EXPECT_NEAR(measures.size()->length, 0.03, 1e-5);
   EXPECT_NEAR(measures.size()->area, 0.03 * 0.007, 0.03 * 1e-4);
+  // Of the point only the tip counts.
+  const double tip = 0.093 + 0.0008 * 0.8 * double(cutting::kPointNodes);
+  EXPECT_NEAR(measures.size()->along_blade, (0.1 - tip) / 0.8, 2e-5);
   measures.measure(rest_state(scene.model));
   EXPECT_FALSE(measures.size());
 }
@@ -294,7 +298,7 @@ TEST_F(Measures, EachHasAUnitADirectionAMeaningAndASource) {
   compare::SessionTrack cutting = press();
   cutting.severed_at[0] = 10, cutting.severed[10] = 1, cutting.cuts = {{10, 11}};
   const compare::Comparison comparison = compare::compare_sessions(cutting, cutting, scene_);
-  EXPECT_EQ(comparison.values.size(), 27u);
+  EXPECT_EQ(comparison.values.size(), 28u);
   for (const compare::MeasuredValue& value : comparison.values) {
     EXPECT_NE(std::string(value.measure->unit), "") << value.measure->key;
     EXPECT_NE(std::string(compare::to_word(value.measure->direction)), "") << value.measure->key;
