@@ -128,6 +128,28 @@ TEST_F(Measures, CutsAreMeasuredOnTheSweptSurfaceToAHundredthOfAMillimetre) {
   EXPECT_FALSE(measures.size());
 }
 
+TEST_F(Measures, ACutThroughACavityIsDeepFromTheOuterSurface) {
+  // A tetrahedron below z = 0.1 m with another one taken out of it, through which the edge goes.
+  recordings::SessionStart scene = scene_;
+  scene.model.surfaces.assign(scene.model.organs.size(), Surface{});
+  scene.model.surfaces[0].vertex = {{-0.1, -0.1, 0.1},    {0.3, -0.1, 0.1},   {-0.1, 0.3, 0.1},   {-0.1, -0.1, -0.3},
+                                    {-0.05, -0.05, 0.08}, {0.1, -0.05, 0.08}, {-0.05, 0.1, 0.08}, {-0.05, -0.05, 0}};
+  scene.model.surfaces[0].triangle = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0},
+                                      {4, 6, 5}, {4, 5, 7}, {5, 6, 7}, {6, 4, 7}};
+  State state = rest_state(scene.model);
+  const auto front = [](double along) {
+    cutting::Front front;
+    for (std::size_t n = 0; n < kEdgeNodes; ++n) front[n] = {along, 0, -0.05 + 0.005 * double(n)};
+    return front;
+  };
+  cutting::NewlySwept newly;
+  newly.fill(1), newly.back() = 0;
+  cutting::add_swept(state, front(0), front(5e-4), newly);
+  session::CutMeasures measures(scene.model);
+  measures.measure(state);
+  EXPECT_NEAR(measures.size().value().along_blade, 0.12, 2e-5) << "the tip is at z = -0.02 m";
+}
+
 TEST_F(Measures, APathBesideTheExpertsIsThatFarAwayWhateverItsPace) {
   compare::SessionTrack beside = new_track();
   go(beside, {0.02, 0, 0.1}, {0.02, 0, 0.05}, 1.3);
