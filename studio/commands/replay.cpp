@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "studio/output/files.h"
 #include "studio/output/number_text.h"
 #include "studio/output/printable.h"
+#include "studio/session/cut_measures.h"
 #include "studio/session/probes.h"
 #include "studio/session/time_range.h"
 
@@ -63,7 +65,7 @@ std::string csv_header(const Model& model, const std::vector<session::Probe>& pr
   return std::string(
              "tick,time_s,tool,tool_x_mm,tool_y_mm,tool_z_mm,tool_qw,tool_qx,tool_qy,tool_qz,buttons,"
              "force_x_n,force_y_n,force_z_n,force_n,depth_mm,contacts,severed,same_as_recorded") +
-         (model.hands > 1 ? of_second : "") + of_probes + "\n";
+         (model.has_scalpel() ? ",blade_depth_mm" : "") + (model.hands > 1 ? of_second : "") + of_probes + "\n";
 }
 
 /// Tool, pose and buttons of a hand; force and depth; contacts.
@@ -83,8 +85,9 @@ HandCells cells_of(const Model& model, const Hand& in, const stepping::HandRepor
   return {tool + pose, loads, std::to_string(report.contacts)};
 }
 
+/// `blade` measures its depth along itself; none: the scene has none.
 std::string csv_row(const Model& model, const recordings::ReplayCursor& cursor,
-                    const std::vector<session::Probe>& probes) {
+                    const std::vector<session::Probe>& probes, const std::optional<session::CutMeasures>& blade) {
   const Inputs& inputs = cursor.record().inputs;
   const stepping::StepReport& report = cursor.report();
   const HandCells first = cells_of(model, inputs, report);
@@ -92,6 +95,10 @@ std::string csv_row(const Model& model, const recordings::ReplayCursor& cursor,
   std::string row = std::to_string(tick) + "," + output::fixed(double(tick) * model.tick, 6) + "," + first.inputs +
                     "," + first.loads + "," + first.contacts + "," + std::to_string(report.severed) + "," +
                     (cursor.same_so_far() ? "1" : "0");
+  if (blade) {
+    const bool is_held = model.is_scalpel(inputs.tool) || model.is_scalpel(inputs.second.tool);
+    row += "," + output::fixed(is_held ? 1e3 * blade->edge_depth(cursor.state()) : 0, 3);
+  }
   if (model.hands > 1) {
     const HandCells second = cells_of(model, inputs.second, report.second);
     row += "," + second.inputs + "," + second.loads + "," + second.contacts;
@@ -122,6 +129,8 @@ int run_replay(const ReplayArguments& arguments) {
   const std::vector<session::Probe> probes = session::probes_of(*reader);
   const std::int64_t ticks = range->to - range->from;
   std::string rows = csv_header(model, probes);
+  std::optional<session::CutMeasures> blade;
+  if (!arguments.csv.empty() && model.has_scalpel()) blade.emplace(model);
   double most_force = 0, most_depth = 0;
   LeastTimes least(*range);
   bool is_same = true;
@@ -131,7 +140,7 @@ int run_replay(const ReplayArguments& arguments) {
       const Result<bool> went_on = cursor->step();
       if (!went_on) return print_errors(went_on.errors());
       least.add(std::size_t(cursor->tick() - 1 - range->from), cursor->tick_time());
-      if (!arguments.csv.empty() && time == 0) rows += csv_row(model, *cursor, probes);
+      if (!arguments.csv.empty() && time == 0) rows += csv_row(model, *cursor, probes, blade);
       for (std::size_t hand = 0; hand < kMostHands; ++hand) {
         most_force = std::max(most_force, norm(cursor->report().of_hand(hand).tool_force));
         most_depth = std::max(most_depth, cursor->report().of_hand(hand).depth);
@@ -159,7 +168,8 @@ Command add_replay(CLI::App& program) {
   app->footer("Example: ctpm replay out/demo.ctpm --from-s 1 --to-s 3 --csv out/demo.csv");
   app->add_option("session", arguments->file, "Session file (.ctpm)")->required();
   add_time_range(*app, arguments->range);
-  app->add_option("--csv", arguments->csv, "Table with time, tool, force, depth and probes of each tick");
+  app->add_option("--csv", arguments->csv,
+                  "Table with time, tool, force, depth, that of a blade along itself, and probes of each tick");
   app->add_flag("--overwrite", arguments->overwrite, "Replace an existing table");
   app->add_option("--times", arguments->times,
                   "Replay it so often, and print the least that each tick took: its own time, whatever else runs")

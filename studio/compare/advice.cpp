@@ -75,12 +75,12 @@ void add_cut(std::vector<Sentence>& sentences, const SessionTrack& expert, const
     sentences.push_back({whole / severed, "Complete the cut: " + number(whole) + " of the " + number(severed) +
                                               " elements that the expert severed were left whole."});
   if (!expert.cut || !trainee.cut) return;
-  const double more = trainee.cut->depth - expert.cut->depth;
-  if (std::abs(more) > kNotableShare * expert.cut->depth)
-    sentences.push_back({std::abs(more) / expert.cut->depth, std::string("Cut ") +
-                                                                 (more < 0 ? "deeper: " : "less deep: ") +
-                                                                 number(1e3 * trainee.cut->depth) + " mm, the expert " +
-                                                                 number(1e3 * expert.cut->depth) + " mm."});
+  // Not from the nearest surface: in a cut through most of an organ that is the far side.
+  const double own = trainee.cut->along_blade, wanted = expert.cut->along_blade;
+  if (const double more = own - wanted; std::abs(more) > kNotableShare * wanted)
+    sentences.push_back({std::abs(more) / wanted, std::string("Cut ") + (more < 0 ? "deeper: " : "less deep: ") +
+                                                      number(1e3 * own) + " mm, the expert " + number(1e3 * wanted) +
+                                                      " mm."});
 }
 
 /// How much less deep than the expert a tool without a blade pushes.

@@ -199,6 +199,13 @@ const Measure kCutDepth{"cut_depth_mm",
                         "from the nearest surface to the deepest place that the blade's edge cut, at rest",
                         kNetwork,
                         kLengthRounding};
+const Measure kCutAlongBlade{"cut_depth_along_blade_mm",
+                             "depth of the cut along the blade",
+                             "mm",
+                             nearer,
+                             "from the deepest place that the blade's edge cut along the blade to the surface, at rest",
+                             kNetwork,
+                             kLengthRounding};
 const Measure kCutLength{"cut_length_mm", "length of the cut", "mm", nearer, "along the surface at rest, of all cuts",
                          kNetwork,        kLengthRounding};
 const Measure kCutArea{
@@ -218,11 +225,11 @@ const Measure kAlignedLargest{"aligned_deviation_largest_mm",
 
 std::span<const Measure* const> all_measures() {
   static constexpr const Measure* measures[] = {
-      &kCompletionTime, &kPathLength,     &kEconomy,       &kSparc,        &kJerk,         &kIdle,     &kPeakForce,
-      &kMeanForce,      &kOtherPeakForce, &kTimeAbove,     &kImpulseAbove, &kImpulse,      &kWork,     &kWorkAbove,
-      &kZoneTime,       &kZoneImpulse,    &kZoneWork,      &kDepth,        &kBeyondDamage, &kSevered,  &kSeveredBoth,
-      &kSeveredExpert,  &kSeveredTrainee, &kOverlap,       &kCutMean,      &kCutHausdorff, &kCutDepth, &kCutLength,
-      &kCutArea,        &kAlignedMean,    &kAlignedLargest};
+      &kCompletionTime, &kPathLength,     &kEconomy,     &kSparc,         &kJerk,         &kIdle,     &kPeakForce,
+      &kMeanForce,      &kOtherPeakForce, &kTimeAbove,   &kImpulseAbove,  &kImpulse,      &kWork,     &kWorkAbove,
+      &kZoneTime,       &kZoneImpulse,    &kZoneWork,    &kDepth,         &kBeyondDamage, &kSevered,  &kSeveredBoth,
+      &kSeveredExpert,  &kSeveredTrainee, &kOverlap,     &kCutMean,       &kCutHausdorff, &kCutDepth, &kCutAlongBlade,
+      &kCutLength,      &kCutArea,        &kAlignedMean, &kAlignedLargest};
   return measures;
 }
 

@@ -12,7 +12,7 @@ namespace ctpm::compare {
 extern const Measure kCompletionTime, kPathLength, kEconomy, kSparc, kJerk, kIdle, kPeakForce, kMeanForce,
     kOtherPeakForce, kTimeAbove, kImpulseAbove, kImpulse, kWork, kWorkAbove, kZoneTime, kZoneImpulse, kZoneWork, kDepth,
     kBeyondDamage, kSevered, kSeveredBoth, kSeveredExpert, kSeveredTrainee, kOverlap, kCutMean, kCutHausdorff,
-    kCutDepth, kCutLength, kCutArea, kAlignedMean, kAlignedLargest;
+    kCutDepth, kCutAlongBlade, kCutLength, kCutArea, kAlignedMean, kAlignedLargest;
 
 /// All of them, in the order of a report.
 std::span<const Measure* const> all_measures();

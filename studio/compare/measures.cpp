@@ -25,8 +25,8 @@ void add_values(Comparison& comparison, const SessionTrack& expert, const Sessio
   };
   for (std::size_t i = 0; i < a.size(); ++i) {
     const Measure* measure = a[i].measure;
-    const bool is_of_cut =
-        measure == &kSevered || measure == &kCutDepth || measure == &kCutLength || measure == &kCutArea;
+    const bool is_of_cut = measure == &kSevered || measure == &kCutDepth || measure == &kCutAlongBlade ||
+                           measure == &kCutLength || measure == &kCutArea;
     if (is_of_cut && expert.cuts.empty() && trainee.cuts.empty()) continue;
     const bool is_of_some =
         measure == &kOtherPeakForce || measure == &kZoneTime || measure == &kZoneImpulse || measure == &kZoneWork;

@@ -146,7 +146,8 @@ std::vector<reports::Plot> plots_over_time(const ComparedSessions& compared) {
     plots.push_back(plot);
   }
   if (has_any(expert.blade_depth, trainee.blade_depth)) {
-    reports::Plot plot{.title = "Depth of the blade in the tissue", .x_title = "time [s]", .y_title = "depth [mm]"};
+    reports::Plot plot{
+        .title = "Depth of the blade in the tissue, along the blade", .x_title = "time [s]", .y_title = "depth [mm]"};
     plot.series = {curve("expert", expert, expert.blade_depth, kMillimetres, kExpertColour),
                    curve("trainee", trainee, trainee.blade_depth, kMillimetres, kTraineeColour)};
     plot.events = events_of(comparison, {MomentKind::stray_cut});

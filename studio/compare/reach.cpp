@@ -8,7 +8,7 @@ namespace ctpm::compare {
 std::vector<Shortfall> shortfalls_of(std::span<const MeasuredValue> values, double damage_depth) {
   std::vector<Shortfall> shortfalls;
   for (const MeasuredValue& value : values) {
-    if (value.measure != &kDepth && value.measure != &kCutDepth && value.measure != &kCutArea) continue;
+    if (value.measure != &kDepth && value.measure != &kCutAlongBlade && value.measure != &kCutArea) continue;
     const double expert = value.expert.value_or(0), trainee = value.trainee.value_or(0);
     if (value.measure == &kDepth && damage_depth > 0 && expert > 1e3 * damage_depth) continue;
     if (trainee < (1 - kNotableShare) * expert) shortfalls.push_back({value.measure, expert, trainee});

@@ -181,7 +181,10 @@ void add_depth(Values& values, const SessionTrack& track, double damage_depth) {
   if (depth > 0)
     values.push_back({&kDepth, kMillimetres * depth});
   else
-    values.push_back({&kDepth, {}, track.cuts.empty() ? "no tissue was pushed" : "a blade cuts: see depth of the cut"});
+    values.push_back(
+        {&kDepth,
+         {},
+         track.cuts.empty() ? "no tissue was pushed" : "a blade cuts: see depth of the cut along the blade"});
   if (damage_depth > 0)
     values.push_back({&kBeyondDamage, time_beyond(track, damage_depth)});
   else
@@ -200,6 +203,7 @@ void add_cut(Values& values, const SessionTrack& track) {
       values.push_back({&measure, {}, "nothing was cut, or no organ has a surface"});
   };
   add_size(kCutDepth, &session::CutSize::depth, kMillimetres);
+  add_size(kCutAlongBlade, &session::CutSize::along_blade, kMillimetres);
   add_size(kCutLength, &session::CutSize::length, kMillimetres);
   add_size(kCutArea, &session::CutSize::area, kMillimetres * kMillimetres);
 }

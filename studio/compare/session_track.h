@@ -38,8 +38,8 @@ struct SessionTrack {
   std::vector<Vec3> tip;            ///< of the tool: a ball's centre, a blade's tip [m]     (tick_count)
   std::vector<double> force;        ///< magnitude of the tissue's force on the tool [N]    (tick_count)
   std::vector<double> depth;        ///< [m]                                                (tick_count)
-  std::vector<double> blade_depth;  ///< of a held blade's edge in the tissue at rest [m], where it was replayed; empty:
-                                    ///< no blade (tick_count)
+  std::vector<double> blade_depth;  ///< of a held blade in the tissue at rest, along the blade [m], where it was
+                                    ///< replayed; empty: no blade (tick_count)
   std::vector<double> other_force;  ///< as `force`, on the tool in the other hand; empty: there is none (tick_count)
   std::vector<double> work;         ///< of the tool against that force [J]; empty: not known         (tick_count)
   std::vector<std::int32_t> organ;  ///< that the tool touches most, in Model::organs; -1: none; empty: not known, of a

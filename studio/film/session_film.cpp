@@ -186,10 +186,10 @@ Error SessionFilm::differs() const {
 
 bool SessionFilm::holds_blade(const Hand& hand) const { return model().is_scalpel(hand.tool); }
 
-/// While a blade is held, and after it was put away after a cut, the depth is that of the cut.
+/// While a blade is held, and after it was put away after a cut, the depth is that of the cut, along the blade.
 void SessionFilm::show_cut_depth() {
   cut_.measure(cursor_.state());
-  const double depth = cut_.size().value_or(session::CutSize{}).depth;
+  const double depth = cut_.size().value_or(session::CutSize{}).along_blade;
   const Inputs& inputs = cursor_.state().last_inputs;
   const bool is_empty = inputs.tool < 0 && inputs.second.tool < 0;
   overlay_.hand.is_blade = is_empty ? cut_.size().has_value() : holds_blade(inputs);

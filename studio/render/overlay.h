@@ -21,7 +21,7 @@ struct ForcePoint {
 /// What the tissue does to the tool in a hand.
 struct HandLoad {
   double force = 0;       ///< magnitude on the tool [N]
-  double depth = 0;       ///< indentation of the touched tissue, or depth of the cut [m]
+  double depth = 0;       ///< indentation of the touched tissue, or depth of the cut along the blade [m]
   bool is_blade = false;  ///< the depth is that of the cut, which has no limit
 };
 

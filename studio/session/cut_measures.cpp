@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/cutting/cutting.h"
+
 namespace ctpm::session {
 namespace {
 
@@ -20,6 +22,15 @@ double line_in_triangle(const std::array<Vec3, 3>& corner, const std::array<doub
     end[count++] = corner[i] + depth[i] / (depth[i] - depth[j]) * (corner[j] - corner[i]);
   }
   return count == 2 ? norm(end[1] - end[0]) : 0;
+}
+
+/// The places of those nodes from the tip to the heel that are `known`.
+template <class IsKnown, class PlaceOf>
+EdgePlaces edge_where(IsKnown&& is_known, PlaceOf&& place_of) {
+  EdgePlaces edge;
+  for (std::size_t n = cutting::kPointNodes; n < kEdgeNodes; ++n)
+    if (is_known(n)) edge.place.push_back(place_of(n)), edge.from_tip = edge.from_tip || n == cutting::kPointNodes;
+  return edge;
 }
 
 }  // namespace
@@ -56,33 +67,49 @@ void CutMeasures::add(const cutting::SweptQuad& quad, CutSize& size) const {
                 norm(cross(quad.to2 - quad.to, quad.from2 - quad.to)));
 }
 
+/// Of what the edge newly swept in a row.
+double CutMeasures::along_blade(const State& state, std::size_t row, Vec3& way) const {
+  const auto swept = [&](std::size_t node) { return state.swept_organ[row * kEdgeNodes + node]; };
+  double deepest = 0;
+  for (std::size_t organ = 0; organ < surfaces_.size(); ++organ) {
+    if (!surfaces_[organ]) continue;
+    const EdgePlaces edge =
+        edge_where([&](std::size_t n) { return swept(n) == organ + 1 || swept(n - 1) == organ + 1; },
+                   [&](std::size_t n) { return state.swept[row * kEdgeNodes + n]; });
+    deepest = std::max(deepest, depth_along_blade(depth_, organ, edge, way));
+  }
+  return deepest;
+}
+
 double CutMeasures::edge_depth(const State& state) const {
   double deepest = 0;
-  for (std::size_t node = 0; node < state.edge_organ.size(); ++node) {
-    const std::int32_t organ = state.edge_organ[node];
-    if (organ < 0 || !surfaces_[std::size_t(organ)]) continue;
-    const Vec3 place = state.blade_trail[node];
-    if (depth_.at(std::size_t(organ), place) <= 0) continue;
-    deepest = std::max(deepest, surfaces_[std::size_t(organ)]->nearest(place).squared_distance);
+  for (std::size_t organ = 0; organ < surfaces_.size() && !state.edge_organ.empty(); ++organ) {
+    if (!surfaces_[organ]) continue;
+    const EdgePlaces edge = edge_where([&](std::size_t n) { return state.edge_organ[n] == std::int32_t(organ); },
+                                       [&](std::size_t n) { return state.blade_trail[n]; });
+    Vec3 way;
+    deepest = std::max(deepest, depth_along_blade(depth_, organ, edge, way));
   }
-  return std::sqrt(deepest);
+  return deepest;
 }
 
 void CutMeasures::measure(const State& state) {
   const std::size_t rows = cutting::swept_rows(state);
   const bool goes_on = rows > rows_ && (rows_ == 0 || state.swept[(rows_ - 1) * kEdgeNodes] == last_);
-  if (!goes_on && rows != rows_) rows_ = 0, measured_ = {}, any_ = false;
-  const auto add_row = [&](std::size_t row, CutSize& size) {
+  if (!goes_on && rows != rows_) rows_ = 0, measured_ = {}, way_ = {}, any_ = false;
+  const auto add_row = [&](std::size_t row, CutSize& size, Vec3& way) {
     bool any = false;
     for (std::size_t node = 0; row > 0 && node + 1 < kEdgeNodes; ++node)
       if (const cutting::SweptQuad quad = cutting::swept_quad(state, row, node); quad.organ >= 0)
         any = true, add(quad, size);
+    if (any) size.along_blade = std::max(size.along_blade, along_blade(state, row, way));
     return any;
   };
-  for (; rows_ + 1 < rows; ++rows_) any_ = add_row(rows_, measured_) || any_;
+  for (; rows_ + 1 < rows; ++rows_) any_ = add_row(rows_, measured_, way_) || any_;
   if (rows_ > 0) last_ = state.swept[(rows_ - 1) * kEdgeNodes];
   CutSize size = measured_;
-  const bool any = (rows > rows_ && add_row(rows_, size)) || any_;
+  Vec3 way = way_;
+  const bool any = (rows > rows_ && add_row(rows_, size, way)) || any_;
   const bool has_surface = std::any_of(surfaces_.begin(), surfaces_.end(), [](const auto& s) { return s.has_value(); });
   size_ = any && has_surface ? std::optional(size) : std::nullopt;
 }

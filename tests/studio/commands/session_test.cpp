@@ -26,6 +26,7 @@ using testing::TemporaryFolder;
 const std::string kScenes = std::string(CTPM_SOURCE_DIR) + "/scenes";
 const std::string kShipped = CTPM_SHIPPED_SESSIONS;
 const std::string kPress = kShipped + "/liver-press-expert.ctpm";
+const std::string kCut = kShipped + "/kidney-cut-expert.ctpm";
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -171,6 +172,19 @@ TEST(ReplayCsv, HasTimeToolForceAndDepthOfEachTick) {
   }
   EXPECT_GT(most_force, 0.5);
   EXPECT_GT(most_depth, 5);
+}
+
+TEST(ReplayCsv, HasTheDepthOfAHeldBladeAlongIt) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_ctpm({"replay", kCut, "--csv", "a.csv"}, folder.path()).code, 0);
+  double deepest = 0;
+  for (auto& row : read_csv(folder.path() / "a.csv")) {
+    const double depth = std::stod(row.at("blade_depth_mm")), tip = std::stod(row.at("tool_z_mm"));
+    EXPECT_EQ(std::stod(row.at("depth_mm")), 0) << "of balls and pins";
+    EXPECT_TRUE(depth == 0 || (row.at("tool") == "scalpel" && tip < 46)) << row.at("tick");
+    deepest = std::max(deepest, depth);
+  }
+  EXPECT_NEAR(deepest, 22.6, 0.5) << "the tip goes to 22 mm, the top is at 44.6 mm";
 }
 
 /// A session that the physics `revision` made, with hashes of its own.

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/cutting/cutting.h"
 #include "core/model/box.h"
 #include "studio/compare/advice.h"
 #include "studio/compare/measure_table.h"
@@ -120,8 +121,33 @@ TEST_F(Measures, CutsAreMeasuredOnTheSweptSurfaceToAHundredthOfAMillimetre) {
   EXPECT_NEAR(measures.size()->depth, 0.007, 1e-5);
   EXPECT_NEAR(measures.size()->length, 0.03, 1e-5);
   EXPECT_NEAR(measures.size()->area, 0.03 * 0.007, 0.03 * 1e-4);
+  // Of the point only the tip counts.
+  const double tip = 0.093 + 0.0008 * 0.8 * double(cutting::kPointNodes);
+  EXPECT_NEAR(measures.size()->along_blade, (0.1 - tip) / 0.8, 2e-5);
   measures.measure(rest_state(scene.model));
   EXPECT_FALSE(measures.size());
+}
+
+TEST_F(Measures, ACutThroughACavityIsDeepFromTheOuterSurface) {
+  // A tetrahedron below z = 0.1 m with another one taken out of it, through which the edge goes.
+  recordings::SessionStart scene = scene_;
+  scene.model.surfaces.assign(scene.model.organs.size(), Surface{});
+  scene.model.surfaces[0].vertex = {{-0.1, -0.1, 0.1},    {0.3, -0.1, 0.1},   {-0.1, 0.3, 0.1},   {-0.1, -0.1, -0.3},
+                                    {-0.05, -0.05, 0.08}, {0.1, -0.05, 0.08}, {-0.05, 0.1, 0.08}, {-0.05, -0.05, 0}};
+  scene.model.surfaces[0].triangle = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0},
+                                      {4, 6, 5}, {4, 5, 7}, {5, 6, 7}, {6, 4, 7}};
+  State state = rest_state(scene.model);
+  const auto front = [](double along) {
+    cutting::Front front;
+    for (std::size_t n = 0; n < kEdgeNodes; ++n) front[n] = {along, 0, -0.05 + 0.005 * double(n)};
+    return front;
+  };
+  cutting::NewlySwept newly;
+  newly.fill(1), newly.back() = 0;
+  cutting::add_swept(state, front(0), front(5e-4), newly);
+  session::CutMeasures measures(scene.model);
+  measures.measure(state);
+  EXPECT_NEAR(measures.size().value().along_blade, 0.12, 2e-5) << "the tip is at z = -0.02 m";
 }
 
 TEST_F(Measures, APathBesideTheExpertsIsThatFarAwayWhateverItsPace) {
@@ -294,7 +320,7 @@ TEST_F(Measures, EachHasAUnitADirectionAMeaningAndASource) {
   compare::SessionTrack cutting = press();
   cutting.severed_at[0] = 10, cutting.severed[10] = 1, cutting.cuts = {{10, 11}};
   const compare::Comparison comparison = compare::compare_sessions(cutting, cutting, scene_);
-  EXPECT_EQ(comparison.values.size(), 27u);
+  EXPECT_EQ(comparison.values.size(), 28u);
   for (const compare::MeasuredValue& value : comparison.values) {
     EXPECT_NE(std::string(value.measure->unit), "") << value.measure->key;
     EXPECT_NE(std::string(compare::to_word(value.measure->direction)), "") << value.measure->key;

@@ -65,14 +65,14 @@ TEST_F(Compare, AClumsyCutIsWorseInEveryMeasureThatHasAnExpertsValue) {
   EXPECT_EQ(value_of(json, "elements_severed", "expert"),
             value_of(json, "elements_severed_by_both", "trainee") +
                 value_of(json, "elements_severed_by_expert_only", "trainee"));
-  // The blade's depth is that of its edge: its largest is that of the cut, within what it goes in 0.01 s.
+  // The blade's depth is that along the blade: its largest is that of the cut, within what it goes in 0.01 s.
   const auto plot = json.find("Depth of the blade in the tissue"), curve = json.find("\"name\": \"expert\"", plot);
   ASSERT_NE(plot, std::string::npos);
   const auto values = json.find("\"y\": [", curve);
   double deepest = 0;
   const char* at = json.c_str() + values + 6;
   for (char* end = nullptr; *at != ']'; at = end) deepest = std::max(deepest, std::strtod(at + 1, &end));
-  EXPECT_NEAR(deepest, value_of(json, "cut_depth_mm", "expert"), 0.5);
+  EXPECT_NEAR(deepest, value_of(json, "cut_depth_along_blade_mm", "expert"), 0.5);
   EXPECT_TRUE(std::isnan(value_of(json, "largest_depth_mm", "trainee"))) << "a blade pushes nothing";
   // The second cut lies 10 to 14 mm beside the first.
   EXPECT_GT(value_of(json, "cut_path_hausdorff_mm", "trainee"), 8);

@@ -19,7 +19,7 @@ TEST_F(Reach, LessThatWasDoneIsNotBetterForItsLowerForce) {
   const auto cutting = [&](double depth, double area, double force) {
     compare::SessionTrack track = pressed(0, force);
     track.severed_at[0] = 10, track.severed[10] = 1, track.cuts = {{10, 11}};
-    track.cut = session::CutSize{.depth = depth, .length = 0.03, .area = area};
+    track.cut = session::CutSize{.depth = 0.01, .length = 0.03, .area = area, .along_blade = depth};
     return track;
   };
   const auto force_is = [&](const compare::SessionTrack& expert, const compare::SessionTrack& trainee) {
@@ -47,6 +47,10 @@ TEST_F(Reach, LessThatWasDoneIsNotBetterForItsLowerForce) {
   const compare::Comparison comparison = compare::compare_sessions(expert, trainee, scene_);
   const recordings::SessionStart& scene = scene_;
   EXPECT_EQ(compare::advice_of({expert, trainee, scene, comparison}).at(0), "Push deeper: 4 mm, the expert 8 mm.");
+  // A cut through most of an organ is as near to a surface as one that ends above its middle.
+  const compare::SessionTrack cut = cutting(0.02, 2e-4, 1), nearly_through = cutting(0.04, 2e-4, 1);
+  const compare::Comparison of_cuts = compare::compare_sessions(cut, nearly_through, scene_);
+  EXPECT_EQ(compare::advice_of({cut, nearly_through, scene, of_cuts}).at(0), "Cut less deep: 40 mm, the expert 20 mm.");
   EXPECT_EQ(compare::standing_of(find(comparison, "economy_of_motion")), "same") << "it does not grow with the work";
 }
 
