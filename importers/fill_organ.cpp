@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <limits>
 #include <numeric>
@@ -13,6 +15,7 @@
 #include "importers/refine.h"
 #include "importers/scan_rows.h"
 #include "importers/shape_error.h"
+#include "importers/size.h"
 #include "importers/surface_index.h"
 #include "importers/text.h"
 #include "importers/topology.h"
@@ -56,7 +59,7 @@ Result<Lattice> lay_cells(const CheckedMesh& mesh, double spacing, const FillOpt
     return std::max(1.0, std::ceil(length / spacing - kRounding)) + (moved == 0 ? 0 : 2);
   };
   const double nx = cells(extent.x, shift.x), ny = cells(extent.y, shift.y), nz = cells(extent.z, shift.z);
-  const double expected = mesh.volume / (spacing * spacing * spacing);
+  const double expected = expected_spheres(mesh, spacing);
   if (expected > 1.2 * double(options.most_spheres) || ny * nz > kMostRows || std::max({nx, ny, nz}) > 1e6) {
     char count[32];
     std::snprintf(count, sizeof count, "%.3g", expected);
@@ -281,6 +284,21 @@ double radius_for(const CheckedMesh& mesh, std::int64_t spheres) {
   constexpr int kMostSteps = 12;
   double spacing = std::cbrt(mesh.volume / double(spheres)), best = spacing, least = INFINITY;
   for (int step = 0; step < kMostSteps; ++step) {
+double spacing_of(const FillOptions& options) {
+  return 2 * options.sphere_radius + (options.gap < 0 ? options.sphere_radius : options.gap);
+}
+
+double expected_spheres(const CheckedMesh& mesh, double spacing) {
+  return mesh.volume / (spacing * spacing * spacing) + 0.5 * mesh.area / (spacing * spacing);
+}
+
+std::string roughly(double number) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.2g", number);
+  std::snprintf(text, sizeof text, "%.10g", std::strtod(text, nullptr));
+  return text;
+}
+
     const Result<Lattice> cells = lay_cells(mesh, spacing, {});
     if (!cells) {
       spacing *= 2;
@@ -297,8 +315,7 @@ double radius_for(const CheckedMesh& mesh, std::int64_t spheres) {
 
 Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options) try {
   if (Errors errors = check(mesh, options); !errors.empty()) return errors;
-  const double radius = options.sphere_radius;
-  const double spacing = 2 * radius + (options.gap < 0 ? radius : options.gap);
+  const double radius = options.sphere_radius, spacing = spacing_of(options);
   const auto tell = [&](const char* stage, double fraction) {
     if (options.progress) options.progress(std::string("fill: ") + stage, fraction);
   };

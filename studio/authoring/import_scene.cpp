@@ -138,6 +138,7 @@ class Import {
     }
     std::optional<importers::RepairedFile> turned;
     if (request_.turn != Vec3{}) turned = importers::turned(file_->file, request_.turn);
+    options.usual_size = file_->tissue.usual_size();
     const importers::RepairedFile& lying = turned ? *turned : file_->file;
     FillingWish wish{request_.sphere_radius, spheres ? spheres : request_.spheres};
     constexpr int kMostTries = 3;

@@ -1,4 +1,5 @@
 #include "importers/fill.h"
+#include "importers/size.h"
 
 #include <gtest/gtest.h>
 
@@ -452,6 +453,17 @@ TEST(Fill, SurfaceFollowsRigidMotionExactly) {
   const Quat quarter{half, 0, half, 0};
   const auto move = [&](Vec3 p) { return rotate(quarter, p) + Vec3{0.1, 0.2, 0.3}; };
   Vec3Array rest, positions;
+TEST(Fill, TheExpectedNumberOfSpheresIsThatOfTheFilling) {
+  // A full ball, and a sheet far thinner than a spacing, of which the volume alone would tell nothing.
+  for (const importers::RawMesh& raw : {zoo::sphere(0.05, 3), zoo::box({0.2, 0.2, 0.0005}, 20)}) {
+    const importers::CheckedMesh mesh = checked(raw);
+    const double expected = importers::expected_spheres(mesh, 0.005);
+    const auto filled = double(importers::fill_organ(mesh, spaced(0.005))->report.spheres);
+    EXPECT_GT(expected, 0.4 * filled);
+    EXPECT_LT(expected, 1.1 * filled);
+  }
+}
+
   for (const Vec3& p : organ.centre) rest.push_back(p), positions.push_back(move(p));
   std::vector<Vec3> vertex;
   surface::deform_surface(organ.surface, rest, 0, vertex);
