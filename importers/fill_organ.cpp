@@ -19,6 +19,7 @@
 #include "importers/surface_index.h"
 #include "importers/text.h"
 #include "importers/topology.h"
+#include "importers/wall_thickness.h"
 
 namespace ctpm::importers {
 namespace {
@@ -26,6 +27,7 @@ namespace {
 constexpr double kMostRows = 6e5;  // lattice rows; bounds memory
 // A surface point farther than this from every sphere with so much tissue marks a thin part.
 constexpr double kThinInSpacings = 2, kFullShare = 0.6;
+constexpr double kSpacingsAcross = 2;     // what carries tissue: one sheet of spheres folds like cloth
 constexpr double kLongestEdge = 1.0 / 3;  // of the drawn surface, in spacings
 
 constexpr std::int64_t kFewestTriangles = 100;  // a coarser surface no longer resembles its organ
@@ -190,14 +192,14 @@ std::int64_t count_groups(const std::vector<Triangle>& triangle, const std::vect
 }
 
 /// Measures the distance from the surface to the spheres, and finds parts too thin to hold one full of tissue.
-void measure_surface(const Cover& cover, const CheckedMesh& mesh, int threads, FillReport& report) {
+void measure_surface(const Cover& cover, const CheckedMesh& mesh, const FillOptions& options, FillReport& report) {
   const double spacing = cover.lattice.spacing;
   std::vector<Cell> full;
   for (std::size_t n = 0; n < cover.cell.size(); ++n)
     if (cover.shares.sphere[n] > kFullShare) full.push_back(cover.cell[n]);
   const CellLookup all(cover.lattice, cover.cell), inner(cover.lattice, full);
   std::vector<double> distance(mesh.vertex.size()), to_full(mesh.vertex.size());
-  in_pieces(distance.size(), threads, [&](std::size_t begin, std::size_t end) {
+  in_pieces(distance.size(), options.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       distance[v] = std::sqrt(all.nearest_squared_distance(mesh.vertex[v]));
       to_full[v] = std::sqrt(inner.nearest_squared_distance(mesh.vertex[v]));
@@ -211,11 +213,16 @@ void measure_surface(const Cover& cover, const CheckedMesh& mesh, int threads, F
   if (thin == 0) return;
   const auto worst = std::max_element(to_full.begin(), to_full.end()) - to_full.begin();
   const double share = double(std::count(is_thin.begin(), is_thin.end(), char{1})) / double(is_thin.size());
+  const double thickness = wall_thickness(mesh, is_thin, spacing), fine = thickness / kSpacingsAcross;
   report.findings.push_back({"thin", thin, mesh.vertex[std::size_t(worst)],
-                             counted(thin, "part") + " of the organ thinner than about a spacing (" + mm_text(spacing) +
-                                 "), " + std::to_string(std::lround(100 * share)) + " % of its vertices, one at " +
+                             counted(thin, "part") + " of the organ, " + std::to_string(std::lround(100 * share)) +
+                                 " % of its vertices, thinner than about a spacing (" + mm_text(spacing) +
+                                 "), mostly about " + roughly(1e3 * thickness) + " mm thick, one at " +
                                  place_text(mesh.vertex[std::size_t(worst)]),
-                             "none", "a thin part bends too easily or too hard; a smaller sphere radius fills it"});
+                             "none",
+                             "it bends too easily or too hard, and a cut finds no inside; spheres of radius " +
+                                 roughly(1e3 * fine / spacing * options.sphere_radius) + " mm, " + roughly(1e3 * fine) +
+                                 " mm apart, would lie two across it: about " + roughly(expected_spheres(mesh, fine))});
 }
 
 /// Coarsens a drawn surface that has more triangles than requested.
@@ -277,13 +284,6 @@ void note_flat(const FilledOrgan& organ, std::vector<Finding>& findings) {
 
 }  // namespace
 
-double radius_for(const CheckedMesh& mesh, std::int64_t spheres) {
-  // The number falls with the spacing cubed inside and squared at the surface; a step between both converges for
-  // either.
-  constexpr double kPower = 0.4, kNear = 0.03;
-  constexpr int kMostSteps = 12;
-  double spacing = std::cbrt(mesh.volume / double(spheres)), best = spacing, least = INFINITY;
-  for (int step = 0; step < kMostSteps; ++step) {
 double spacing_of(const FillOptions& options) {
   return 2 * options.sphere_radius + (options.gap < 0 ? options.sphere_radius : options.gap);
 }
@@ -299,6 +299,13 @@ std::string roughly(double number) {
   return text;
 }
 
+double radius_for(const CheckedMesh& mesh, std::int64_t spheres) {
+  // The number falls with the spacing cubed inside and squared at the surface; a step between both converges for
+  // either.
+  constexpr double kPower = 0.4, kNear = 0.03;
+  constexpr int kMostSteps = 12;
+  double spacing = std::cbrt(mesh.volume / double(spheres)), best = spacing, least = INFINITY;
+  for (int step = 0; step < kMostSteps; ++step) {
     const Result<Lattice> cells = lay_cells(mesh, spacing, {});
     if (!cells) {
       spacing *= 2;
@@ -347,7 +354,7 @@ Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options) 
   report.spheres = std::int64_t(cover.cell.size());
   for_each_element(cover, [&](std::size_t, std::size_t) { ++report.edges; });
   for (const double share : cover.shares.sphere) report.filled_volume += share * spacing * spacing * spacing;
-  measure_surface(cover, mesh, options.threads, report);
+  measure_surface(cover, mesh, options, report);
   report.shape = measure_shape(mesh, cover, organ.depth, radius, options.threads);
   organ.cell = std::move(cover.cell);
   organ.shares = std::move(cover.shares);

@@ -142,8 +142,7 @@ Errors thin_parts_of(const loading::LoadedScene& scene) {
               " at " + importers::place_text(thin.place),
           "a smaller radius_mm carries more of it"));
     for (const importers::Finding& finding : scene.reports[i].fill.findings)
-      if (finding.code == "thin" || finding.code == "flat")
-        warnings.push_back(scene.scene.places.error_at(at, finding.found, finding.remains));
+      if (finding.code == "flat") warnings.push_back(scene.scene.places.error_at(at, finding.found, finding.remains));
   }
   return warnings;
 }

@@ -405,6 +405,22 @@ TEST(Fill, ThinPartsAreTold) {
   EXPECT_NE(thin->remains, "");
 }
 
+TEST(Fill, TheWallOfABagIsToldWithTheSpheresThatWouldDo) {
+  const importers::CheckedMesh mesh = checked(zoo::both(zoo::sphere(0.05, 4), zoo::sphere(0.046, 4)));
+  const auto found = [&](double spacing) {
+    const importers::Filling filling = filled(mesh, spaced(spacing));
+    const importers::Finding* thin = find(filling.report.findings, "thin");
+    return thin ? thin->found + "; " + thin->remains : "nothing thin, " + std::to_string(filling.report.spheres);
+  };
+  for (const double spacing : {0.011, 0.022}) {
+    const std::string text = found(spacing);
+    for (const char* part :
+         {"100 % of its vertices", "mostly about 4 mm thick", "spheres of radius 0.67 mm, 2 mm apart", "about 22000"})
+      EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
+  EXPECT_EQ(found(0.0019).substr(0, 12), "nothing thin") << found(0.0019);
+}
+
 TEST(Fill, SheetThinnerThanASpacingKeepsItsThicknessAndIsTold) {
   const importers::Filling filling = filled(checked(zoo::box({0.1, 0.1, 0.008}, 5)), spaced(0.01));
   EXPECT_NEAR(filling.report.filled_volume, 8e-5, 1e-12);
@@ -437,6 +453,17 @@ TEST(Fill, WhatCannotBeFilledIsRefused) {
   EXPECT_NE(message(spaced(1e-7)).find("spheres"), std::string::npos) << "before memory is spent";
 }
 
+TEST(Fill, TheExpectedNumberOfSpheresIsThatOfTheFilling) {
+  // A full ball, and a sheet far thinner than a spacing, of which the volume alone would tell nothing.
+  for (const importers::RawMesh& raw : {zoo::sphere(0.05, 3), zoo::box({0.2, 0.2, 0.0005}, 20)}) {
+    const importers::CheckedMesh mesh = checked(raw);
+    const double expected = importers::expected_spheres(mesh, 0.005);
+    const auto filled = double(importers::fill_organ(mesh, spaced(0.005))->report.spheres);
+    EXPECT_GT(expected, 0.4 * filled);
+    EXPECT_LT(expected, 1.1 * filled);
+  }
+}
+
 TEST(Fill, NoSphereFitsIntoAShellOfPaper) {
   // A closed bowl, 0.1 mm thick: a lattice that is symmetric about the box's middle meets nothing of it.
   const importers::RawMesh raw = zoo::moved(zoo::box({0.1, 0.1, 0.0001}, 20), [](Vec3 p) {
@@ -453,17 +480,6 @@ TEST(Fill, SurfaceFollowsRigidMotionExactly) {
   const Quat quarter{half, 0, half, 0};
   const auto move = [&](Vec3 p) { return rotate(quarter, p) + Vec3{0.1, 0.2, 0.3}; };
   Vec3Array rest, positions;
-TEST(Fill, TheExpectedNumberOfSpheresIsThatOfTheFilling) {
-  // A full ball, and a sheet far thinner than a spacing, of which the volume alone would tell nothing.
-  for (const importers::RawMesh& raw : {zoo::sphere(0.05, 3), zoo::box({0.2, 0.2, 0.0005}, 20)}) {
-    const importers::CheckedMesh mesh = checked(raw);
-    const double expected = importers::expected_spheres(mesh, 0.005);
-    const auto filled = double(importers::fill_organ(mesh, spaced(0.005))->report.spheres);
-    EXPECT_GT(expected, 0.4 * filled);
-    EXPECT_LT(expected, 1.1 * filled);
-  }
-}
-
   for (const Vec3& p : organ.centre) rest.push_back(p), positions.push_back(move(p));
   std::vector<Vec3> vertex;
   surface::deform_surface(organ.surface, rest, 0, vertex);
