@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <limits>
 #include <numeric>
@@ -13,9 +15,11 @@
 #include "importers/refine.h"
 #include "importers/scan_rows.h"
 #include "importers/shape_error.h"
+#include "importers/size.h"
 #include "importers/surface_index.h"
 #include "importers/text.h"
 #include "importers/topology.h"
+#include "importers/wall_thickness.h"
 
 namespace ctpm::importers {
 namespace {
@@ -23,6 +27,7 @@ namespace {
 constexpr double kMostRows = 6e5;  // lattice rows; bounds memory
 // A surface point farther than this from every sphere with so much tissue marks a thin part.
 constexpr double kThinInSpacings = 2, kFullShare = 0.6;
+constexpr double kSpacingsAcross = 2;     // what carries tissue: one sheet of spheres folds like cloth
 constexpr double kLongestEdge = 1.0 / 3;  // of the drawn surface, in spacings
 
 constexpr std::int64_t kFewestTriangles = 100;  // a coarser surface no longer resembles its organ
@@ -56,7 +61,7 @@ Result<Lattice> lay_cells(const CheckedMesh& mesh, double spacing, const FillOpt
     return std::max(1.0, std::ceil(length / spacing - kRounding)) + (moved == 0 ? 0 : 2);
   };
   const double nx = cells(extent.x, shift.x), ny = cells(extent.y, shift.y), nz = cells(extent.z, shift.z);
-  const double expected = mesh.volume / (spacing * spacing * spacing);
+  const double expected = expected_spheres(mesh, spacing);
   if (expected > 1.2 * double(options.most_spheres) || ny * nz > kMostRows || std::max({nx, ny, nz}) > 1e6) {
     char count[32];
     std::snprintf(count, sizeof count, "%.3g", expected);
@@ -187,14 +192,14 @@ std::int64_t count_groups(const std::vector<Triangle>& triangle, const std::vect
 }
 
 /// Measures the distance from the surface to the spheres, and finds parts too thin to hold one full of tissue.
-void measure_surface(const Cover& cover, const CheckedMesh& mesh, int threads, FillReport& report) {
+void measure_surface(const Cover& cover, const CheckedMesh& mesh, const FillOptions& options, FillReport& report) {
   const double spacing = cover.lattice.spacing;
   std::vector<Cell> full;
   for (std::size_t n = 0; n < cover.cell.size(); ++n)
     if (cover.shares.sphere[n] > kFullShare) full.push_back(cover.cell[n]);
   const CellLookup all(cover.lattice, cover.cell), inner(cover.lattice, full);
   std::vector<double> distance(mesh.vertex.size()), to_full(mesh.vertex.size());
-  in_pieces(distance.size(), threads, [&](std::size_t begin, std::size_t end) {
+  in_pieces(distance.size(), options.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       distance[v] = std::sqrt(all.nearest_squared_distance(mesh.vertex[v]));
       to_full[v] = std::sqrt(inner.nearest_squared_distance(mesh.vertex[v]));
@@ -208,11 +213,16 @@ void measure_surface(const Cover& cover, const CheckedMesh& mesh, int threads, F
   if (thin == 0) return;
   const auto worst = std::max_element(to_full.begin(), to_full.end()) - to_full.begin();
   const double share = double(std::count(is_thin.begin(), is_thin.end(), char{1})) / double(is_thin.size());
+  const double thickness = wall_thickness(mesh, is_thin, spacing), fine = thickness / kSpacingsAcross;
   report.findings.push_back({"thin", thin, mesh.vertex[std::size_t(worst)],
-                             counted(thin, "part") + " of the organ thinner than about a spacing (" + mm_text(spacing) +
-                                 "), " + std::to_string(std::lround(100 * share)) + " % of its vertices, one at " +
+                             counted(thin, "part") + " of the organ, " + std::to_string(std::lround(100 * share)) +
+                                 " % of its vertices, thinner than about a spacing (" + mm_text(spacing) +
+                                 "), mostly about " + roughly(1e3 * thickness) + " mm thick, one at " +
                                  place_text(mesh.vertex[std::size_t(worst)]),
-                             "none", "a thin part bends too easily or too hard; a smaller sphere radius fills it"});
+                             "none",
+                             "it bends too easily or too hard, and a cut finds no inside; spheres of radius " +
+                                 roughly(1e3 * fine / spacing * options.sphere_radius) + " mm, " + roughly(1e3 * fine) +
+                                 " mm apart, would lie two across it: about " + roughly(expected_spheres(mesh, fine))});
 }
 
 /// Coarsens a drawn surface that has more triangles than requested.
@@ -274,6 +284,21 @@ void note_flat(const FilledOrgan& organ, std::vector<Finding>& findings) {
 
 }  // namespace
 
+double spacing_of(const FillOptions& options) {
+  return 2 * options.sphere_radius + (options.gap < 0 ? options.sphere_radius : options.gap);
+}
+
+double expected_spheres(const CheckedMesh& mesh, double spacing) {
+  return mesh.volume / (spacing * spacing * spacing) + 0.5 * mesh.area / (spacing * spacing);
+}
+
+std::string roughly(double number) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.2g", number);
+  std::snprintf(text, sizeof text, "%.10g", std::strtod(text, nullptr));
+  return text;
+}
+
 double radius_for(const CheckedMesh& mesh, std::int64_t spheres) {
   // The number falls with the spacing cubed inside and squared at the surface; a step between both converges for
   // either.
@@ -297,8 +322,7 @@ double radius_for(const CheckedMesh& mesh, std::int64_t spheres) {
 
 Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options) try {
   if (Errors errors = check(mesh, options); !errors.empty()) return errors;
-  const double radius = options.sphere_radius;
-  const double spacing = 2 * radius + (options.gap < 0 ? radius : options.gap);
+  const double radius = options.sphere_radius, spacing = spacing_of(options);
   const auto tell = [&](const char* stage, double fraction) {
     if (options.progress) options.progress(std::string("fill: ") + stage, fraction);
   };
@@ -330,7 +354,7 @@ Result<Filling> fill_organ(const CheckedMesh& mesh, const FillOptions& options) 
   report.spheres = std::int64_t(cover.cell.size());
   for_each_element(cover, [&](std::size_t, std::size_t) { ++report.edges; });
   for (const double share : cover.shares.sphere) report.filled_volume += share * spacing * spacing * spacing;
-  measure_surface(cover, mesh, options.threads, report);
+  measure_surface(cover, mesh, options, report);
   report.shape = measure_shape(mesh, cover, organ.depth, radius, options.threads);
   organ.cell = std::move(cover.cell);
   organ.shares = std::move(cover.shares);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "importers/size.h"
 #include "importers/text.h"
 #include "importers/topology.h"
 
@@ -122,6 +123,22 @@ Progress told_to(const ImportOptions& options) {
   };
 }
 
+/// Refuses, before the work of filling it, an organ of a wrong size that would need many spheres: it has a wrong unit,
+/// and would settle for minutes or hours.
+Result<Done> check_size(const CheckedMesh& mesh, UsualSize usual, const FillOptions& fill) {
+  constexpr double kMost = 20'000;
+  const Vec3 size = mesh.box_most - mesh.box_least;
+  const double spacing = spacing_of(fill), expected = expected_spheres(mesh, spacing);
+  if (norm(size) <= kWrongSize * usual.most || expected <= kMost) return Done{};
+  char lengths[64];
+  std::snprintf(lengths, sizeof lengths, "%.0f x %.0f x %.0f mm", 1e3 * size.x, 1e3 * size.y, 1e3 * size.z);
+  return Error{"",
+               std::string("the organ is ") + lengths + " large (usual: " + range_text(usual) +
+                   " from corner to corner of its box), and about " + roughly(expected) + " spheres " +
+                   mm_text(spacing) + " apart would fill it",
+               "check the unit of the mesh (mesh_unit in a scene), or take a larger sphere radius"};
+}
+
 Errors with_place(Errors errors, const std::string& path) {
   for (Error& error : errors)
     if (error.where.empty()) error.where = path;
@@ -205,6 +222,8 @@ Result<ImportedOrgan> fill_repaired(const RepairedFile& file, std::size_t index,
   fill.most_triangles = options.most_triangles;
   fill.threads = options.threads;
   fill.progress = share_of(tell, kRepairShare, 1);
+  if (const Result<Done> sized = check_size(mesh, options.usual_size, fill); !sized)
+    return with_place(sized.errors(), report.path);
   Result<Filling> filling = fill_organ(mesh, fill);
   if (!filling) return with_place(filling.errors(), report.path);
   imported.organ = std::move(filling->organ);

@@ -73,7 +73,7 @@ Result<RepairedFile> repair_file(const std::string& path, const ImportOptions& o
 /// The same with its meshes turned as ImportOptions::turn would have.
 RepairedFile turned(RepairedFile file, Vec3 turn);
 
-/// Fills mesh `index` of a file. Errors: those of fill_organ().
+/// Fills mesh `index` of a file. Errors: those of fill_organ(); many spheres in an organ of a wrong size (size.h).
 Result<ImportedOrgan> fill_repaired(const RepairedFile& file, std::size_t index, const ImportOptions& options = {});
 
 /// Runs read_mesh and repair_mesh, for a closed mesh that is not filled. `unit_in_metres`: length of one unit of the

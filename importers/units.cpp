@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "importers/mesh.h"
+#include "importers/size.h"
 #include "importers/topology.h"
 
 namespace ctpm::importers {
 namespace {
 
 constexpr double kDecimetre = 0.1, kInch = 0.0254;  // [m]
-constexpr double kWrong = 4;  // a file's unit is not believed if the organ would be so many times too large or small
 
 bool is_usual(double diagonal, UsualSize usual) { return diagonal >= usual.least && diagonal <= usual.most; }
 
@@ -29,7 +29,7 @@ UnitChoice choose_unit(double diagonal, double unit_of_file, std::optional<doubl
   if (given_in_metres) return choice(*given_in_metres, UnitSource::given);
   const auto ratio_to = [&](double bound, double in_metres) { return in_metres * diagonal / bound; };
   if (const double unit = unit_of_file;
-      unit > 0 && ratio_to(usual.least, unit) >= 1 / kWrong && ratio_to(usual.most, unit) <= kWrong)
+      unit > 0 && ratio_to(usual.least, unit) >= 1 / kWrongSize && ratio_to(usual.most, unit) <= kWrongSize)
     return choice(unit, UnitSource::file);
 
   // |log| of the ratio between the organ's diagonal and the geometric mean of the usual range.

@@ -124,8 +124,7 @@ class Import {
   Errors fill(std::optional<std::int64_t> spheres) {
     importers::ImportOptions options;
     options.unit_in_metres = request_.unit_in_metres, options.size = request_.size, options.scale = request_.scale;
-    options.all_parts = request_.parts == Parts::all_in_one;
-    options.gap = request_.gap.value_or(-1);
+    options.all_parts = request_.parts == Parts::all_in_one, options.gap = request_.gap.value_or(-1);
     options.largest_hole = request_.largest_hole;
     options.most_triangles = request_.most_triangles.value_or(0);
     options.should_stop = request_.should_stop;
@@ -139,6 +138,7 @@ class Import {
     std::optional<importers::RepairedFile> turned;
     if (request_.turn != Vec3{}) turned = importers::turned(file_->file, request_.turn);
     const importers::RepairedFile& lying = turned ? *turned : file_->file;
+    options.usual_size = file_->tissue.usual_size();
     FillingWish wish{request_.sphere_radius, spheres ? spheres : request_.spheres};
     constexpr int kMostTries = 3;
     for (int tries = 0;; ++tries) {
@@ -258,6 +258,19 @@ class Import {
     return place_beside(present_.organs, organs);
   }
 
+  /// Spheres take the material of the depth at which they lie: those of a thin layer lie in it by chance.
+  void note_thin_layer(Draft& draft, const LayerWish& wish) const {
+    const double above = draft.spec.layers.empty() ? 0 : draft.spec.layers.back().to_depth;
+    const double thickness = wish.to_depth - above, spacing = draft.filled.spacing;
+    if (thickness < spacing * (1 - 1e-9))
+      draft.note("thin_layer",
+                 "the layer of " + wish.tissue + " is " + importers::mm_text(thickness) +
+                     " thick, and the spheres are " + importers::mm_text(spacing) + " apart",
+                 "none",
+                 "some of it lies between spheres; a radius of " +
+                     importers::mm_text(thickness / spacing * draft.filled.sphere_radius) + " resolves it");
+  }
+
   Errors add_layers(Draft& draft) const {
     for (const LayerWish& wish : request_.layers) {
       const Result<Tissue> tissue = choose_tissue(place_, wish.tissue, {});
@@ -266,6 +279,7 @@ class Import {
         errors.front().where = output::option_name("import.layers");
         return errors;
       }
+      note_thin_layer(draft, wish);
       draft.spec.layers.push_back({wish.to_depth, tissue->material});
     }
     return {};

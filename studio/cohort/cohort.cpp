@@ -179,6 +179,14 @@ Result<Experts> measure_experts(TaskResult& task, const std::vector<FoundSession
   return experts;
 }
 
+/// Drops the attempts that failed; the numbers of those that follow stay, as they are the trainee's.
+void drop(std::vector<Attempt>& attempts, const std::vector<Errors>& failures) {
+  std::vector<Attempt> kept;
+  for (std::size_t i = 0; i < attempts.size(); ++i)
+    if (failures[i].empty()) kept.push_back(std::move(attempts[i]));
+  attempts = std::move(kept);
+}
+
 std::vector<FoundSession> of_task(const std::vector<FoundSession>& all, std::size_t task) {
   std::vector<FoundSession> found;
   std::ranges::copy_if(all, std::back_inserter(found), [&](const FoundSession& s) { return s.task == task; });
@@ -243,7 +251,8 @@ Result<Cohort> measure_cohort(const scenes::CourseSpec& course, const std::strin
                               const CohortOptions& options) {
   Result<Gathered> gathered = gather(course, trainees);
   if (!gathered) return gathered.errors();
-  Cohort cohort{.course = course, .tasks = {}, .trainees = {}, .left_out = gathered->left_out};
+  Cohort cohort{
+      .course = course, .tasks = {}, .trainees = {}, .left_out = gathered->left_out, .damaged = gathered->damaged};
   const auto total = std::int64_t(gathered->experts.size() + gathered->trainees.size());
   std::int64_t done = 0;
   std::mutex telling;
@@ -274,14 +283,16 @@ Result<Cohort> measure_cohort(const scenes::CourseSpec& course, const std::strin
         failures[k] = read.errors();
       tell();
     });
-    for (Errors& failure : failures) append(errors, std::move(failure));
+    for (const Errors& failure : failures) append(cohort.damaged, failure);
+    drop(task.attempts, failures);
     for (const auto* all : {&task.experts, &task.attempts})
       for (const Attempt& attempt : *all)
         replays = replays && std::ranges::none_of(attempt.remarks, [](const std::string& remark) {
                     return remark.starts_with("does not replay") || remark.starts_with("could not be verified");
                   });
-    for (const FoundSession& session : found) people.insert(session.person);
+    for (const Attempt& attempt : task.attempts) people.insert(attempt.session.person);
   }
+  if (people.empty()) append(errors, cohort.damaged);
   if (!errors.empty()) return errors;
   cohort.trainees.assign(people.begin(), people.end());
   cohort.is_verified = options.verify && replays;

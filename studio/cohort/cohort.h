@@ -56,6 +56,7 @@ struct Cohort {
   std::vector<TaskResult> tasks;
   std::vector<std::string> trainees;  ///< in the order of their names
   std::vector<std::string> left_out;
+  Errors damaged;            ///< trainees' sessions that cannot be read to their end; they are left out as well
   bool is_verified = false;  ///< every session was replayed, and all as they were recorded
 };
 
@@ -66,7 +67,7 @@ struct CohortOptions {
 };
 
 /// Measures all sessions of a course. A session of a trainee is forgotten when it has been measured. Errors: those of
-/// gather(); damaged sessions, all of them.
+/// gather(); damaged sessions of experts, all of them; those of trainees if no other is of a task.
 Result<Cohort> measure_cohort(const scenes::CourseSpec& course, const std::string& trainees,
                               const CohortOptions& options);
 

@@ -181,6 +181,9 @@ std::string educator_page(const Cohort& cohort) {
     points.push_back(counted(cohort.left_out.size(), "session") + (cohort.left_out.size() == 1
                                                                        ? " belongs to no task and is left out."
                                                                        : " belong to no task and are left out."));
+  if (!cohort.damaged.empty())
+    points.push_back(counted(cohort.damaged.size(), "session") + " cannot be read and " +
+                     (cohort.damaged.size() == 1 ? "is" : "are") + " left out.");
   report.conclude(reports::ReportVerdict::shown, first, points);
   add_caveats(report, cohort);
   for (const TaskResult& task : cohort.tasks) {
@@ -196,8 +199,9 @@ std::string educator_page(const Cohort& cohort) {
       for (const std::string& remark : expert.remarks)
         report.add_verdict(false, expert.session.file + " " + remark + ".");
   }
-  if (!cohort.left_out.empty()) report.add_heading("Left out");
+  if (!cohort.left_out.empty() || !cohort.damaged.empty()) report.add_heading("Left out");
   for (const std::string& text : cohort.left_out) report.add_paragraph(text + ".");
+  for (const Error& damage : cohort.damaged) report.add_paragraph(to_string(damage) + ".");
   report.add_heading("What the measures are");
   report.add_table(meanings(cohort));
   return report.html();

@@ -71,7 +71,7 @@ class Gatherer {
     const std::string& folder = course_.tasks[task].experts;
     std::size_t count = 0;
     for (const fs::path& file : files_below(folder)) {
-      const Result<SessionReader> session = open(file);
+      const Result<SessionReader> session = open(file, errors_);
       if (!session) continue;
       ++count;
       add(found_.experts, *session, file, folder, task);
@@ -92,7 +92,7 @@ class Gatherer {
     const std::vector<fs::path> files = files_below(folder);
     if (files.empty()) errors_.push_back(without_sessions(folder, "holds no session"));
     for (const fs::path& file : files) {
-      const Result<SessionReader> session = open(file);
+      const Result<SessionReader> session = open(file, found_.damaged);
       if (!session) continue;
       const Scene scene = scene_of(*session);
       std::vector<std::size_t> tasks;
@@ -130,9 +130,9 @@ class Gatherer {
   }
 
  private:
-  Result<SessionReader> open(const fs::path& file) {
+  static Result<SessionReader> open(const fs::path& file, Errors& errors) {
     Result<SessionReader> session = SessionReader::open(file.string());
-    append(errors_, session);
+    append(errors, session);
     return session;
   }
 

@@ -24,11 +24,12 @@ struct FoundSession {
 struct Gathered {
   std::vector<FoundSession> experts, trainees;  ///< by task, person and time
   std::vector<std::string> left_out;            ///< sessions of trainees that belong to no task, and why
+  Errors damaged;                               ///< sessions of trainees that cannot be read
 };
 
-/// Finds the sessions below the folders of experts and of trainees. Errors: all sessions that cannot be read; experts
-/// of one task in two scenes; a task with fewer than two experts; a session that occurs twice; two tasks in one scene
-/// between which the path of a session does not choose; a folder without any session.
+/// Finds the sessions below the folders of experts and of trainees. Errors: experts' sessions that cannot be read;
+/// experts of one task in two scenes; a task with fewer than two experts; a session that occurs twice; two tasks in one
+/// scene between which the path of a session does not choose; a folder without any session.
 Result<Gathered> gather(const scenes::CourseSpec& course, const std::string& trainees);
 
 /// Checks the experts' sessions of a course. Errors: those of gather() that concern them.

@@ -7,6 +7,7 @@
 #include "studio/cohort/gather.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
+#include "studio/commands/script_checks.h"
 #include "studio/compare/measure_table.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/loading/oddities.h"
@@ -53,6 +54,27 @@ bool is_good_course(const std::string& path, const scenes::LoadOptions& load) {
   return true;
 }
 
+Result<loading::LoadedScene> load(const std::string& path, const scenes::LoadOptions& options) {
+  ProgressLine line("filling");
+  return loading::load_whole_scene(
+      path, options, {}, {}, [&](const std::string&, double share) { line.show(std::int64_t(1000 * share), 1000); });
+}
+
+Errors oddities_of(const loading::LoadedScene& scene) {
+  ProgressLine line("settling");
+  return *loading::find_oddities(scene, [&] { return line.show(1, 0), false; });
+}
+
+/// What is odd about a good scene and its good scripts.
+Errors warnings_of(const CheckArguments& arguments, const loading::LoadedScene& scene) {
+  Errors warnings = scene.scene.warnings;
+  append(warnings, oddities_of(scene));
+  for (const std::string& file : arguments.scripts)
+    if (const Result<scenes::Script> script = read_script(file, scene))  // a pipe is empty by now
+      append(warnings, find_far_script(*script, scene.built.model, file));
+  return warnings;
+}
+
 int run_check(const CheckArguments& arguments) {
   if (!arguments.scripts.empty() && arguments.scenes.size() > 1)
     return print_errors({{"--script", "belongs to one scene, got " + std::to_string(arguments.scenes.size()), ""}});
@@ -63,17 +85,17 @@ int run_check(const CheckArguments& arguments) {
       continue;
     }
     const Errors of_scripts = errors_of_scripts(arguments, path);
-    const Result<loading::LoadedScene> scene = loading::load_whole_scene(path, arguments.load);
+    const Result<loading::LoadedScene> scene = load(path, arguments.load);
     if (!scene || !of_scripts.empty()) {
       Errors errors;
       append(errors, scene), append(errors, of_scripts);
       code = print_errors(errors);
       continue;
     }
-    const Errors odd = *loading::find_oddities(*scene);
-    print_warnings(scene->scene.warnings), print_warnings(odd);
+    const Errors warnings = warnings_of(arguments, *scene);
+    print_warnings(warnings);
     print("%s: good, %zu spheres, %zu elements%s\n", path.c_str(), scene->built.model.sphere_count(),
-          scene->built.model.element_count(), counted_warnings(scene->scene.warnings.size() + odd.size()).c_str());
+          scene->built.model.element_count(), counted_warnings(warnings.size()).c_str());
   }
   return code;
 }
@@ -85,7 +107,7 @@ Command add_check(CLI::App& program) {
   CLI::App* app = program.add_subcommand("check",
                                          "Validates scenes with their meshes and scripts, and courses; all errors at "
                                          "once. Settles scenes, and warns of what "
-                                         "is odd.");
+                                         "is odd, and of scripts whose tools never come near an organ.");
   app->footer(
       "Examples: ctpm check scenes/liver.json\n"
       "          ctpm check scenes/liver.json --script scenes/scripts/liver-cut.json");

@@ -62,6 +62,7 @@ void print_cohort(const cohort::Cohort& cohort) {
   }
   if (cohort.course.evidence.empty()) print("not validated: the course names no evidence\n");
   for (const std::string& text : cohort.left_out) print_remark("left out: " + text);
+  for (const Error& damage : cohort.damaged) print_remark("left out: " + to_string(damage));
 }
 
 int run_cohort(const CohortArguments& arguments) {
@@ -93,7 +94,7 @@ int run_cohort(const CohortArguments& arguments) {
   print_cohort(*measured);
   print_remark("written: " + arguments.folder +
                "/index.html, a page for each trainee, results.csv, results.sqlite, statements.jsonl");
-  return exit_good;
+  return measured->damaged.empty() ? exit_good : exit_bad_verdict;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -201,6 +202,16 @@ int list_labels(const std::string& map) {
   return exit_good;
 }
 
+/// A session file that is not there yet, named after a script.
+std::string new_session_of(const std::string& script) {
+  const std::string stem = script.substr(0, script.size() - std::string(".script.json").size());
+  std::string file = stem + ".ctpm";
+  std::error_code ignored;
+  for (int number = 2; std::filesystem::exists(file, ignored); ++number)
+    file = stem + "-" + std::to_string(number) + ".ctpm";
+  return file;
+}
+
 int run_import(ImportArguments& arguments) {
   const std::string& mesh = arguments.request.mesh;
   const bool is_map = importers::is_label_map(mesh);
@@ -223,7 +234,7 @@ int run_import(ImportArguments& arguments) {
   if (!arguments.report.empty())
     if (const Result<Done> written = output::write_text_file(arguments.report, report_json(*outcome)); !written)
       return print_errors(written.errors());
-  const std::string scene = arguments.request.scene, stem = scene.substr(0, scene.size() - 5);
+  const std::string& scene = arguments.request.scene;
   std::string meshes;
   for (const authoring::ImportedPart& organ : outcome->organs) {
     print_organ(organ, scene, outcome->organs.size() > 1);
@@ -233,7 +244,8 @@ int run_import(ImportArguments& arguments) {
         1e3 * outcome->tick_time, 1e3 * outcome->dearest_time);
   print("written: %s%s, %s\n", scene.c_str(), meshes.c_str(), outcome->script_file.c_str());
   print("next: ctpm record %s --script %s -o %s\n", output::shell_word(scene).c_str(),
-        output::shell_word(outcome->script_file).c_str(), output::shell_word(stem + ".ctpm").c_str());
+        output::shell_word(outcome->script_file).c_str(),
+        output::shell_word(new_session_of(outcome->script_file)).c_str());
   return exit_good;
 }
 

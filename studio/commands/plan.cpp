@@ -10,6 +10,7 @@
 #include "importers/text.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
+#include "studio/commands/script_checks.h"
 #include "studio/commands/stop_signal.h"
 #include "studio/fidelity/thickness.h"
 #include "studio/loading/loaded_scene.h"
@@ -142,26 +143,20 @@ Errors thin_parts_of(const loading::LoadedScene& scene) {
               " at " + importers::place_text(thin.place),
           "a smaller radius_mm carries more of it"));
     for (const importers::Finding& finding : scene.reports[i].fill.findings)
-      if (finding.code == "thin" || finding.code == "flat")
-        warnings.push_back(scene.scene.places.error_at(at, finding.found, finding.remains));
+      if (finding.code == "flat") warnings.push_back(scene.scene.places.error_at(at, finding.found, finding.remains));
   }
   return warnings;
 }
 
 /// That the script of a session never touched or never cut, though it takes up a tool that would.
-Errors find_misses(const scenes::Script& script, const session::SessionCost& cost, const Model& model,
-                   const std::string& where) {
-  Errors misses;
-  const bool cuts = std::any_of(script.steps.begin(), script.steps.end(), [&](const scenes::ScriptStep& step) {
+Errors misses_of(const scenes::Script& script, const session::SessionCost& cost, const Model& model,
+                 const std::string& where) {
+  const bool takes_blade = std::any_of(script.steps.begin(), script.steps.end(), [&](const scenes::ScriptStep& step) {
     return step.take && std::any_of(model.tools.begin(), model.tools.end(), [&](const Tool& tool) {
              return tool.name == step.take->tool && tool.kind == ToolKind::scalpel;
            });
   });
-  const recordings::SessionStatistics& did = cost.outcome.statistics;
-  if (!(did.max_force > 0))
-    misses.push_back({where, "never touches any tissue", "its places are those of the scene, in mm"});
-  else if (cuts && did.severed == 0)
-    misses.push_back({where, "takes up a scalpel but cuts nothing", "its places are those of the scene, in mm"});
+  Errors misses = find_misses(cost.outcome.statistics, takes_blade, where);
   if (stepping::is_refused(cost.outcome.run.status))
     misses.push_back({where, "the simulation is refused before its end", ""});
   return misses;
@@ -209,12 +204,7 @@ session::ScriptOf script_of(const PlanArguments& arguments) {
     return [](const loading::LoadedScene& scene) -> Result<scenes::Script> {
       return scenes::default_script(scene.scene.spec, scene.organs);
     };
-  return [file = arguments.script](const loading::LoadedScene& scene) -> Result<scenes::Script> {
-    const Result<std::string> text = output::read_text_file(file);
-    if (!text) return text.errors();
-    scenes::PlaceFinder finder = scenes::finder_of(scene.built.model, scene.scene.spec);
-    return scenes::read_script_for(*text, file, scene.built.model, &finder);
-  };
+  return [file = arguments.script](const loading::LoadedScene& scene) { return read_script(file, scene); };
 }
 
 /// Runs the session of a plan, and if its ticks are too dear, those of coarser fillings.
@@ -393,7 +383,7 @@ int run_plan(const PlanArguments& arguments) {
   else if (const Result<Done> measured = measure(arguments, plan); !measured)
     return print_errors(measured.errors());
   if (plan.cost && !arguments.script.empty())
-    append(plan.oddities, find_misses(*steps, *plan.cost, model, arguments.script));
+    append(plan.oddities, misses_of(*steps, *plan.cost, model, arguments.script));
   print_warnings(plan.oddities);
   const std::string solver = solver_of(model, scene->built.integrator);
   if (arguments.json)

@@ -14,6 +14,7 @@
 #include "studio/commands/console.h"
 #include "studio/commands/extremes_text.h"
 #include "studio/commands/record_source.h"
+#include "studio/commands/script_checks.h"
 #include "studio/commands/stop_signal.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/output/files.h"
@@ -188,12 +189,17 @@ int run_record(RecordArguments arguments) {
   options.should_stop = should_stop;
   options.threads = arguments.threads > 0 ? arguments.threads : session::threads_for(start.model);
   session::TickTimes all_times(start.model);
+  bool took_tool = false, took_blade = false;
   const Result<session::RecordOutcome> outcome = [&] {
     ProgressLine progress("recording");
     options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
     session::RecentTimes times;
     options.watch = [&](const State&, const recordings::TickRecord& record, const session::RunOutcome& so_far) {
       all_times.add(record);
+      for (std::size_t hand = 0; hand < kMostHands; ++hand) {
+        const std::int32_t tool = record.inputs.hand(hand).tool;
+        took_tool = took_tool || tool >= 0, took_blade = took_blade || start.model.is_scalpel(tool);
+      }
       if (times.add(record.tick_time))
         progress.add("tick p99 " + output::fixed(1e3 * times.p99(), 2) + " ms, clock " + output::fixed(so_far.slip, 3) +
                      " s behind");
@@ -205,6 +211,9 @@ int run_record(RecordArguments arguments) {
     return session::record_session(start, *opened->source, arguments.output, arguments.overwrite, options);
   }();
   if (!outcome) return print_errors(outcome.errors());
+  // A session that was ended before its script says nothing about the rest of it.
+  if (!arguments.source.script.empty() && took_tool && options.most_ticks == 0 && !stop.came())
+    print_warnings(find_misses(outcome->statistics, took_blade, arguments.source.script));
   return print_outcome(arguments.output, start.model, *outcome, all_times);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -9,6 +10,7 @@
 
 #include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
+#include "studio/session/anonymise.h"
 
 namespace ctpm::film {
 namespace {
@@ -185,8 +187,15 @@ std::vector<video::Caption> captions_of(const std::vector<Moment>& moments, cons
   return captions;
 }
 
+std::string name_of(const recordings::SessionReader& session) {
+  const auto& metadata = session.start().metadata;
+  const auto trainee = metadata.find(session::trainee_key);
+  return trainee != metadata.end() ? trainee->second : std::filesystem::path(session.path()).stem().string();
+}
+
 std::vector<video::Caption> captions_of_pair(const std::vector<video::Caption>& left,
-                                             const std::vector<video::Caption>& right) {
+                                             const std::vector<video::Caption>& right,
+                                             const std::array<std::string, 2>& names) {
   std::vector<double> ends;
   for (const auto* half : {&left, &right})
     for (const video::Caption& caption : *half) ends.push_back(caption.from_s), ends.push_back(caption.to_s);
@@ -195,14 +204,14 @@ std::vector<video::Caption> captions_of_pair(const std::vector<video::Caption>& 
   std::vector<video::Caption> track;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     video::Caption caption{ends[i], ends[i + 1], "", false};
-    const auto add = [&](const char* where, const std::vector<video::Caption>& half) {
+    const auto add = [&](const std::string& where, const std::vector<video::Caption>& half) {
       for (const video::Caption& own : half)
         if (own.from_s <= caption.from_s && own.to_s >= caption.to_s) {
-          caption.text += (caption.text.empty() ? "" : "\n") + std::string(where) + own.text;
+          caption.text += (caption.text.empty() ? "" : "\n") + where + own.text;
           caption.is_chapter = caption.is_chapter || own.from_s == caption.from_s;
         }
     };
-    add("left: ", left), add("right: ", right);
+    add("left (" + names[0] + "): ", left), add("right (" + names[1] + "): ", right);
     if (!caption.text.empty()) track.push_back(caption);
   }
   return track;

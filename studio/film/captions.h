@@ -51,8 +51,13 @@ std::string words_between(const std::vector<Moment>& moments, std::int64_t from,
 std::vector<video::Caption> captions_of(const std::vector<Moment>& moments, const FrameTicks& ticks, std::int64_t shown,
                                         double fps);
 
-/// Those of two halves as one track: "left: ..." above "right: ...". A chapter begins where one of them begins.
+/// Whose session it is: the trainee whom it names, else its file.
+std::string name_of(const recordings::SessionReader& session);
+
+/// Those of two halves as one track, with whose they are: "left (Ana): ..." above "right (Ben): ...". A chapter begins
+/// where one of them begins.
 std::vector<video::Caption> captions_of_pair(const std::vector<video::Caption>& left,
-                                             const std::vector<video::Caption>& right);
+                                             const std::vector<video::Caption>& right,
+                                             const std::array<std::string, 2>& names);
 
 }  // namespace ctpm::film

@@ -69,7 +69,8 @@ Result<std::vector<std::array<double, 2>>> slow_parts_of(const std::vector<recor
 std::vector<video::Caption> captions_of_all(const std::vector<Reel>& reels, double fps) {
   std::vector<std::vector<video::Caption>> all;
   for (const Reel& reel : reels) all.push_back(captions_of(reel.moments, reel.ticks, reel.told, fps));
-  return all.size() == 1 ? all[0] : captions_of_pair(all[0], all[1]);
+  if (all.size() == 1) return all[0];
+  return captions_of_pair(all[0], all[1], {name_of(reels[0].film->reader()), name_of(reels[1].film->reader())});
 }
 
 Result<StageTimes> make_film(std::vector<Reel>& reels, video::VideoWriter& writer, recordings::ByteHash& pixels,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "studio/film/beside_panels.h"
 #include "studio/film/session_strip.h"
@@ -179,7 +178,7 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
     reel.taken_right = Inset::taken_right({size.width, height});
   }
   reel.overlay = std::make_unique<render::Overlay>(size.width, height);
-  const std::string title = reel.film->scene().name + ": " + std::filesystem::path(session.path()).stem().string();
+  const std::string title = reel.film->scene().name + ": " + name_of(session);
   reel.moments = told_moments(*all, title, model.tick, ticks.range.from);
   if (options.strip) reel.strip = strip_of(session, *all, loading::damage_force_of(reel.film->scene()));
   reel.told = std::llround(kCaptionSeconds * options.speed / model.tick);

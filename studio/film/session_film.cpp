@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iterator>
 
 #include "scenes/scene_file.h"
+#include "studio/film/captions.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/output/number_text.h"
 #include "studio/output/option_name.h"
@@ -61,7 +61,7 @@ Result<Done> SessionFilm::begin() {
   overlay_.title = scene_.name;
   if (model.hands > 1) overlay_.second.emplace();
   overlay_.model = structure_name(scene_);
-  overlay_.session = std::filesystem::path(reader_.path()).stem().string();
+  overlay_.session = name_of(reader_);
   overlay_.damage_force = loading::damage_force_of(scene_);
   for (const OrganRange& organ : model.organs)
     if (organ.damage_depth > 0 && (overlay_.damage_depth == 0 || organ.damage_depth < overlay_.damage_depth))

@@ -53,6 +53,12 @@ class Look {
     for (std::size_t i = 0; i < spec.cameras.size(); ++i) look_through(item("/cameras", i), spec.cameras[i]);
   }
 
+  void at_thin_parts() {
+    for (std::size_t i = 0; i < scene_.reports.size(); ++i)
+      for (const importers::Finding& finding : scene_.reports[i].fill.findings)
+        if (finding.code == "thin") warn(item("/organs", i) + "/fill", finding.found, finding.remains);
+  }
+
   /// Organs that touch lie beside each other, and overlap by some spheres at most; more are tissue at the same place
   /// twice.
   void at_overlaps() {
@@ -160,13 +166,13 @@ class Look {
 
 Errors find_odd_places(const LoadedScene& scene) {
   Look look(scene);
-  look.at_points(), look.at_overlaps();
+  look.at_points(), look.at_thin_parts(), look.at_overlaps();
   return look.warnings;
 }
 
 std::optional<Errors> find_oddities(const LoadedScene& scene, const std::function<bool()>& should_stop) {
   Look look(scene);
-  look.at_points(), look.at_overlaps();
+  look.at_points(), look.at_thin_parts(), look.at_overlaps();
   const std::optional<Standing> standing = settle_scene(scene.scene.spec, scene.built.model, {}, should_stop);
   if (!standing) return std::nullopt;
   if (!standing->organ.empty()) look.at_anchors(*standing);

@@ -9,7 +9,7 @@
 namespace ctpm::loading {
 
 /// What is odd about where the things of a scene are, although it can be built, each with its place: a probe, a load or
-/// a camera far from all tissue; an organ that lies in another one.
+/// a camera far from all tissue; an organ that is too thin for its spheres, or lies in another one.
 Errors find_odd_places(const LoadedScene& scene);
 
 /// All that is odd: odd places; an organ that sags by more than a tenth of its size while it settles; one that is held

@@ -266,13 +266,16 @@ void Overlay::Parts::plan_legend(const OverlayData& data, Plan& plan) {
 /// The verdict: top right, or in a narrow picture beside or below the names. The damage warning: bottom right, or above
 /// all that stands at the bottom.
 void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
-  const int pad = px(16), margin = px(20), h = px(17) + 2 * px(13);
-  const auto banner = [&](const std::string& text, int y, bool is_right, const Ink& ink) {
-    const std::string shown = small.shortened(text, std::min(px(640), width - 2 * margin - 2 * pad));
-    const int w = small.width(shown) + 2 * pad;
+  const int pad = px(16), margin = px(20), step = px(24), h = px(17) + 2 * px(13);
+  const int most_wide = std::min(px(640), width - 2 * margin - 2 * pad);
+  const auto banner = [&](const std::string& text, int y, bool is_right, const Ink& ink, std::size_t most_lines) {
+    const std::vector<std::string> shown = small.in_lines(text, most_wide, most_lines);
+    int w = 2 * pad;
+    for (const std::string& one : shown) w = std::max(w, small.width(one) + 2 * pad);
     const int right = width - margin - (y > height / 2 ? data.taken_right : 0);
-    const PixelBox box{is_right ? std::max(margin, right - w) : margin, y, w, h};
-    plan.lines.push_back(line(small, shown, box.x + pad, y + px(13), ink));
+    const PixelBox box{is_right ? std::max(margin, right - w) : margin, y, w, h + step * int(shown.size() - 1)};
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      plan.lines.push_back(line(small, shown[i], box.x + pad, y + px(13) + int(i) * step, ink));
     return box;
   };
   const bool is_bad = data.verdict_tone == VerdictTone::bad;
@@ -280,7 +283,7 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
     const Ink ink = data.verdict_tone == VerdictTone::good ? kGreen : is_bad ? kAmber : kWhite;
     const bool fits = plan.names.x + plan.names.width + px(10) + small.width(data.verdict) + 2 * pad + margin <= width;
     plan.verdict = banner(data.verdict, fits || !is_narrow ? margin : margin + plan.names.height + px(10),
-                          fits || !is_narrow, ink);
+                          fits || !is_narrow, ink, 2);
   }
   if (data.level == OverlayLevel::none) return;
   int bottom = height - margin;
@@ -289,7 +292,7 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
       if (box.height > 0) bottom = std::min(bottom, box.y - px(10));
   const bool is_alone = data.level == OverlayLevel::caption;
   if (const std::string text = damage_text(data); !text.empty() && !is_alone)
-    plan.warning = banner(text, bottom - h, !is_narrow, kWhite);
+    plan.warning = banner(text, bottom - h, !is_narrow, kWhite, 1);
   if (data.caption.empty()) return;
   // Between the plot and the legend and above the warning; in the middle of the picture where it fits there.
   const bool is_free = is_narrow || is_alone;

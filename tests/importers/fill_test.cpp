@@ -1,4 +1,5 @@
 #include "importers/fill.h"
+#include "importers/size.h"
 
 #include <gtest/gtest.h>
 
@@ -404,6 +405,22 @@ TEST(Fill, ThinPartsAreTold) {
   EXPECT_NE(thin->remains, "");
 }
 
+TEST(Fill, TheWallOfABagIsToldWithTheSpheresThatWouldDo) {
+  const importers::CheckedMesh mesh = checked(zoo::both(zoo::sphere(0.05, 4), zoo::sphere(0.046, 4)));
+  const auto found = [&](double spacing) {
+    const importers::Filling filling = filled(mesh, spaced(spacing));
+    const importers::Finding* thin = find(filling.report.findings, "thin");
+    return thin ? thin->found + "; " + thin->remains : "nothing thin, " + std::to_string(filling.report.spheres);
+  };
+  for (const double spacing : {0.011, 0.022}) {
+    const std::string text = found(spacing);
+    for (const char* part :
+         {"100 % of its vertices", "mostly about 4 mm thick", "spheres of radius 0.67 mm, 2 mm apart", "about 22000"})
+      EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
+  EXPECT_EQ(found(0.0019).substr(0, 12), "nothing thin") << found(0.0019);
+}
+
 TEST(Fill, SheetThinnerThanASpacingKeepsItsThicknessAndIsTold) {
   const importers::Filling filling = filled(checked(zoo::box({0.1, 0.1, 0.008}, 5)), spaced(0.01));
   EXPECT_NEAR(filling.report.filled_volume, 8e-5, 1e-12);
@@ -434,6 +451,17 @@ TEST(Fill, WhatCannotBeFilledIsRefused) {
   options.most_spheres = 4100;
   EXPECT_NE(message(options).find("at most 4100"), std::string::npos);
   EXPECT_NE(message(spaced(1e-7)).find("spheres"), std::string::npos) << "before memory is spent";
+}
+
+TEST(Fill, TheExpectedNumberOfSpheresIsThatOfTheFilling) {
+  // A full ball, and a sheet far thinner than a spacing, of which the volume alone would tell nothing.
+  for (const importers::RawMesh& raw : {zoo::sphere(0.05, 3), zoo::box({0.2, 0.2, 0.0005}, 20)}) {
+    const importers::CheckedMesh mesh = checked(raw);
+    const double expected = importers::expected_spheres(mesh, 0.005);
+    const auto filled = double(importers::fill_organ(mesh, spaced(0.005))->report.spheres);
+    EXPECT_GT(expected, 0.4 * filled);
+    EXPECT_LT(expected, 1.1 * filled);
+  }
 }
 
 TEST(Fill, NoSphereFitsIntoAShellOfPaper) {

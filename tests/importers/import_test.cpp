@@ -140,6 +140,24 @@ TEST(Import, ErrorsNameTheFile) {
   EXPECT_EQ(fine.errors()[0].where, path);
 }
 
+TEST(Import, AnOrganOfAWrongUnitIsRefusedBeforeItIsFilled) {
+  const zoo::Folder folder;
+  const std::string path = folder.write("ball.stl", zoo::to_binary_stl(zoo::sphere(60, 3)));
+  importers::ImportOptions options;
+  options.usual_size = {0.1, 0.2}, options.sphere_radius = 0.004, options.unit_in_metres = 0.01;
+  options.progress = [](const std::string& stage, double) { EXPECT_NE(stage.substr(0, 4), "fill"); };
+  const Result<importers::ImportedOrgan> wrong = importers::import_organ(path, options);
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.errors()[0].where, path);
+  for (const char* part : {"1200 x 1200 x 1200 mm", "usual: 100 mm to 200 mm", "spheres 12 mm apart", "mesh_unit"})
+    EXPECT_NE(text_of(wrong.errors()).find(part), std::string::npos) << text_of(wrong.errors());
+  // A large organ of few spheres is its author's matter, and so is one of many spheres that is as large as usual.
+  options.progress = {}, options.sphere_radius = 0.04;
+  EXPECT_TRUE(importers::import_organ(path, options));
+  options.sphere_radius = 0.0009, options.unit_in_metres = 0.001;
+  EXPECT_TRUE(importers::import_organ(path, options));
+}
+
 TEST(Import, AllOptionsOutOfRangeAreToldAtOnce) {
   importers::ImportOptions options;
   options.unit_in_metres = -1;

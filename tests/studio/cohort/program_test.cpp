@@ -375,6 +375,36 @@ TEST_F(CohortProgram, ACourseIsCheckedWithItsScenesAndItsExpertsSessions) {
     EXPECT_TRUE(holds(refused.err, part)) << part << " is not in: " << refused.err;
 }
 
+TEST_F(CohortProgram, ADamagedSessionIsToldAndTheOthersAreMeasured) {
+  const auto half_of = [](const std::string& session) {
+    const std::string whole = slurp(path(session));
+    return whole.substr(0, whole.size() / 2);
+  };
+  fs::create_directories(path("some/Ana"));
+  for (const char* name : {"1", "3"})
+    fs::copy_file(path(std::string("trainees/Ana/") + name + ".ctpm"), path(std::string("some/Ana/") + name + ".ctpm"));
+  write("some/Ana/2.ctpm", half_of("trainees/Ana/2.ctpm"));
+  write("some/Ben/1.ctpm", "no session");
+  // Opened without a fault, but damaged among its ticks.
+  std::string flipped = slurp(path("trainees/Ben/2.ctpm"));
+  for (std::size_t at = flipped.size() / 3; at < flipped.size() / 2; at += 64) flipped[at] = char(flipped[at] ^ 1);
+  write("some/Ben/2.ctpm", flipped);
+  const ProgramOutcome done = ctpm({"cohort", "course.json", "--trainees", "some", "-o", "some-out", "--no-pictures"});
+  EXPECT_EQ(done.code, 1) << done.err;
+  EXPECT_TRUE(holds(done.out, "press: 3 experts, 2 attempts")) << done.out;
+  const std::string page = slurp(path("some-out/index.html"));
+  EXPECT_TRUE(holds(page, "3 sessions cannot be read and are left out.")) << done.err;
+  for (const char* file : {"some/Ana/2.ctpm", "some/Ben/1.ctpm", "some/Ben/2.ctpm"}) {
+    EXPECT_TRUE(holds(done.err, std::string("left out: ") + file)) << done.err;
+    EXPECT_TRUE(holds(page, file)) << file;
+  }
+  fs::remove(path("some/Ana/1.ctpm")), fs::remove(path("some/Ana/3.ctpm"));
+  const ProgramOutcome none = ctpm({"cohort", "course.json", "--trainees", "some", "-o", "none-out"});
+  EXPECT_EQ(none.code, 2) << none.err;
+  EXPECT_TRUE(holds(none.err, "some/Ben/1.ctpm: error: ")) << none.err;
+  EXPECT_FALSE(fs::exists(path("none-out/index.html")));
+}
+
 TEST_F(CohortProgram, ALegendNamesTwoPassMarksOnce) {
   write("both.json", course(R"({"measure": "peak_force_n", "pass_at_least": 0.001, "pass_at_most": LIMIT})"));
   ASSERT_EQ(ctpm({"cohort", "both.json", "--trainees", "trainees", "-o", "both", "--no-pictures"}).code, 0);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -179,6 +180,34 @@ TEST_F(AuthorTools, APreviewShowsMarksAndTheSettledShape) {
     EXPECT_GT(count(marked, red, green, blue), 8);
   }
   EXPECT_NE(ways, marked) << "the script's way is drawn as well";
+}
+
+TEST_F(AuthorTools, ALayerThinnerThanTheSpheresAreApartIsToldWithTheRadiusThatResolvesIt) {
+  const auto imported = ctpm({"import", CTPM_SOURCE_DIR "/scenes/organs/kidney.obj", "--unit", "mm", "--spheres", "700",
+                              "--stiffness-scale", "1", "--layer", "skin:4.5", "--layer", "fat:15.5", "-o",
+                              "layered.json", "--report", "report.json"});
+  ASSERT_EQ(imported.code, 0) << imported.err;
+  expect_says(imported.out,
+              {"the layer of skin is 4.5 mm thick, and the spheres are ", "a radius of 1.5 mm resolves it"});
+  EXPECT_EQ(imported.out.find("the layer of fat"), std::string::npos) << imported.out;
+  expect_says(testing::slurp(folder_.path() / "report.json"), {"\"thin_layer\""});
+}
+
+TEST_F(AuthorTools, TheCommandThatAnImportNamesNextWorksAlsoWhereSessionsAre) {
+  const auto next_works = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"import", "skin.obj", "--unit", "mm", "--spheres", "60", "--stiffness-scale", "1"});
+    const auto imported = ctpm(more);
+    const auto at = imported.out.find("next: ctpm ");
+    ASSERT_NE(at, std::string::npos) << imported.err;
+    std::istringstream words(imported.out.substr(at + std::string("next: ctpm ").size()));
+    std::vector<std::string> command{std::istream_iterator<std::string>(words), {}};
+    command.insert(command.end(), {"--fast", "--duration-s", "0.1"});
+    const auto recorded = ctpm(command);
+    EXPECT_EQ(recorded.code, 0) << recorded.err;
+  };
+  next_works({"-o", "patch.json"});
+  next_works({"-o", "patch.json", "--overwrite"});
+  next_works({"--into", "patch.json", "--beside"});
 }
 
 TEST_F(AuthorTools, WatchLooksAgainWhenAFileIsSaved) {

@@ -47,6 +47,36 @@ std::string cell(const std::string& table, int tick, int column) {
 }
 constexpr int kForceZ = 13;
 
+TEST_F(Record, AScriptThatMissesTheOrganIsTold) {
+  const auto script = [](const std::string& tool, const std::string& at) {
+    return R"({"format": "ctpm-script", "version": 1, "steps": [{"take": {"tool": ")" + tool + R"(", "at_mm": )" + at +
+           R"(}}, {"press": {"distance_mm": 6, "speed_mm_per_s": 60}}]})";
+  };
+  std::string scene = slurp(folder_.path() / "block.json");
+  scene.insert(scene.rfind(']'), R"(, {"name": "scalpel", "kind": "scalpel", "blade_length_mm": 20})");
+  write("both.json", scene);
+  const auto say = [&](const std::string& text) {
+    write("script.json", text);
+    const std::string checked = ctpm({"check", "both.json", "--script", "script.json"});
+    return std::pair{checked,
+                     ctpm({"record", "both.json", "--script", "script.json", "-o", "a.ctpm", "--fast", "--overwrite"})};
+  };
+  // 400 mm beside it; above it, where only the run tells; a blade above it; a press that meets it.
+  const auto far = say(script("ball", "[400, 0, 25]"));
+  EXPECT_TRUE(holds(far.first, "script.json: warning: no tool comes near any organ")) << far.first;
+  EXPECT_TRUE(holds(far.first, "1 warning")) << far.first;
+  EXPECT_TRUE(holds(far.second, "script.json: warning: never touches any tissue")) << far.second;
+  const auto above = say(script("ball", "[0, 0, 40]"));
+  EXPECT_FALSE(holds(above.first, "warning")) << above.first;
+  EXPECT_TRUE(holds(above.second, "script.json: warning: never touches any tissue")) << above.second;
+  const auto blade = say(script("scalpel", "[0, 0, 40]"));
+  EXPECT_TRUE(holds(blade.second, "script.json: warning: never touches any tissue")) << blade.second;
+  const auto good = say(script("ball", "[0, 0, 25]"));
+  EXPECT_FALSE(holds(good.first + good.second, "warning")) << good.first << good.second;
+  const auto idle = say(R"({"format": "ctpm-script", "version": 1, "steps": [{"wait_s": 0.1}]})");
+  EXPECT_FALSE(holds(idle.first + idle.second, "warning")) << idle.first << idle.second;
+}
+
 TEST_F(Record, ATableThatReplayWroteIsAMotionThatGivesTheSameForces) {
   ctpm({"record", "block.json", "--script", "press.json", "-o", "a.ctpm", "--fast"});
   ctpm({"replay", "a.ctpm", "--csv", "a.csv"});

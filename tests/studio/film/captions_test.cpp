@@ -151,7 +151,7 @@ TEST(Captions, ATickWithAToolThatDoesNotExistIsNoCut) {
 
 TEST(Captions, ThoseOfAPairSayOfWhichHalfTheyAre) {
   const std::vector<video::Caption> both =
-      film::captions_of_pair({{0, 2, "begins"}, {5, 6, "cuts"}}, {{1, 3, "touches"}, {5, 6, "damage"}});
+      film::captions_of_pair({{0, 2, "begins"}, {5, 6, "cuts"}}, {{1, 3, "touches"}, {5, 6, "damage"}}, {"Ana", "Ben"});
   ASSERT_EQ(both.size(), 4u);
   const auto is = [&](std::size_t i, double from, double to, const char* text, bool is_chapter) {
     EXPECT_EQ(both[i].from_s, from) << i;
@@ -159,10 +159,10 @@ TEST(Captions, ThoseOfAPairSayOfWhichHalfTheyAre) {
     EXPECT_EQ(both[i].text, text) << i;
     EXPECT_EQ(both[i].is_chapter, is_chapter) << i;
   };
-  is(0, 0, 1, "left: begins", true);
-  is(1, 1, 2, "left: begins\nright: touches", true);
-  is(2, 2, 3, "right: touches", false);
-  is(3, 5, 6, "left: cuts\nright: damage", true);
+  is(0, 0, 1, "left (Ana): begins", true);
+  is(1, 1, 2, "left (Ana): begins\nright (Ben): touches", true);
+  is(2, 2, 3, "right (Ben): touches", false);
+  is(3, 5, 6, "left (Ana): cuts\nright (Ben): damage", true);
 }
 
 TEST(Captions, AFileOfAnotherFormIsRefusedAndLeftAlone) {

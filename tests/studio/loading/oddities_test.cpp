@@ -39,6 +39,27 @@ TEST(Oddities, AnOrganInAnotherOneIsOneAndOneBesideItIsNot) {
   EXPECT_NE(odd[0].message.find("/organs/0: lies in right with "), std::string::npos) << odd[0].message;
 }
 
+TEST(Oddities, AnOrganTooThinForItsSpheresIsOneWithTheRadiusThatWouldDo) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "ctpm_thin";
+  std::filesystem::create_directories(folder);
+  std::ofstream plate(folder / "plate.obj");
+  for (const char* corner : {"0 0 0", "90 0 0", "90 90 0", "0 90 0", "0 0 4", "90 0 4", "90 90 4", "0 90 4"})
+    plate << "v " << corner << "\n";
+  for (const char* quad : {"4 3 2 1", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"})
+    plate << "f " << quad << "\n";
+  plate.close();
+  std::ofstream(folder / "scene.json") << R"({"format": "ctpm-scene", "version": 1, "name": "s", "organs": [
+    {"name": "plate", "mesh": "plate.obj", "mesh_unit": "mm", "fill": {"radius_mm": 4, "gap_mm": 4},
+     "material": {"preset": "skin"}, "anchors": [{"lowest_mm": 1}]}]})";
+  const auto scene = loading::load_whole_scene((folder / "scene.json").string());
+  ASSERT_TRUE(scene);
+  const Errors odd = loading::find_odd_places(*scene);
+  ASSERT_EQ(odd.size(), 1u);
+  EXPECT_NE(odd[0].message.find("/organs/0/fill: "), std::string::npos) << odd[0].message;
+  EXPECT_NE(odd[0].message.find("100 % of its vertices"), std::string::npos) << odd[0].message;
+  EXPECT_NE(odd[0].hint.find("spheres of radius 0.67 mm, 2 mm apart"), std::string::npos) << odd[0].hint;
+}
+
 TEST(Oddities, OrgansMayTouch) {
   // Their surfaces overlap by half a millimetre.
   const auto alone = two_kidneys(1000);

@@ -194,6 +194,21 @@ TEST(Overlay, EveryTextStandsOutFromItsPanel) {
   }
 }
 
+TEST(Overlay, AWarningIsWholeInAPictureOfASheet) {
+  render::OverlayData data;
+  data.level = render::OverlayLevel::caption, data.verdict_tone = render::VerdictTone::bad;
+  data.verdict = "TISSUE IS INSIDE OUT; replay same as recorded", data.caption = "12.34 s  ball touches the tissue";
+  for (const auto& [width, height] : {std::pair{640, 480}, {852, 480}, {480, 360}}) {
+    render::Overlay overlay(width, height, 1.4);
+    std::string said;
+    for (const render::PlacedText& text : overlay.layout(data)) {
+      said += text.text + " ";
+      EXPECT_LE(text.box.x + text.box.width, width) << text.text;
+    }
+    EXPECT_NE(said.find(data.verdict), std::string::npos) << said;
+  }
+}
+
 TEST(Overlay, ItsNumbersAreReadBackFromThePicture) {
   const render_test::GlyphReader reader(1280, 720);
   render::OverlayData data = full_data();
