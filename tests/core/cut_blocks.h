@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <functional>
 
 #include "core/cutbody/cut_body.h"
@@ -22,6 +24,12 @@ inline void cut_along(const Model& model, const std::function<cutting::Front(dou
     cutting::add_swept(state, from, to, newly);
   }
   state.open_cuts = {std::int32_t(cutting::swept_rows(state)), state.axial_severed};
+}
+
+/// Has cuts open so soon that a test needs few ticks.
+inline void open_soon(State& state) {
+  constexpr std::int64_t kTicks = 25;
+  if (state.opening_cuts_at > 0) state.opening_cuts_at = std::min(state.opening_cuts_at, state.tick + kTicks);
 }
 
 /// A block with two cuts along y through all of it, up to `end` [m]. Between them is a strip of a seventh of a spacing

@@ -18,7 +18,7 @@
 namespace ctpm {
 namespace {
 
-using testing::cut_along, testing::DrawnCut, testing::straight_front;
+using testing::cut_along, testing::DrawnCut, testing::open_soon, testing::straight_front;
 
 constexpr double kTop = 0.036;  // of the block [m]
 
@@ -258,12 +258,6 @@ Model block_on_ground(Integrator integrator) {
 }
 
 class CutContactUnder : public ::testing::TestWithParam<Integrator> {};
-
-/// Has cuts open so soon that a test needs few ticks.
-void open_soon(State& state) {
-  constexpr std::int64_t kTicks = 25;
-  if (state.opening_cuts_at > 0) state.opening_cuts_at = std::min(state.opening_cuts_at, state.tick + kTicks);
-}
 
 /// The end of cut_and_press(); `before(tick, stepper)` is called at the start of each tick.
 template <class Before>

@@ -8,6 +8,7 @@
 #include "core/cutbody/cut_points.h"
 #include "core/stepping/step.h"
 #include "tests/core/blade_blocks.h"
+#include "tests/core/cut_blocks.h"
 #include "tests/core/skinned_block.h"
 
 namespace ctpm {
@@ -189,6 +190,7 @@ TEST_P(Hands, NeitherThreadsNorAFreshStartChangeABit) {
                             : tick < 260 ? both({}, press(tick - 100, {0.001, 0.002, 0}, kOtherBall))
                                          : both(press(tick - 200, {0.001, -0.008, 0}), across);
       ASSERT_FALSE(stepping::is_refused(stepper->step(state, inputs).status)) << tick;
+      testing::open_soon(state);
       for (const std::int32_t point : state.touched)
         touches_cut = touches_cut || (points.contains(point) && points.is_of_ball(point, 1));
     }
