@@ -35,6 +35,8 @@ inline double farthest_moved(const Vec3Array& before, const Vec3Array& now, std:
 /// Spheres of which now and then it is asked how far they have come.
 class WatchedSpheres {
  public:
+  /// Reserves memory for `count` of them.
+  void reserve(std::size_t count) { sphere_.reserve(count), seen_.reserve(count); }
   void add(std::int32_t sphere) { sphere_.push_back(sphere), seen_.emplace_back(); }
 
   /// `length(by)` of the farthest of their moves since the last call; `position`: of all spheres [m].

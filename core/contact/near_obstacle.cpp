@@ -71,8 +71,11 @@ void NearObstacle::add_part(surface::Body& body, cutbody::CutPatch* patch) {
   for (std::size_t group = 0; group < surface.groups().size(); ++group) {
     const surface::NearSurface::Bound& bound = surface.groups()[group];
     Region& region = regions_.emplace_back(Region{part, std::int32_t(group)});
+    region.spheres.reserve(std::size_t(bound.last_sphere - bound.first_sphere));
     surface.for_each_sphere(bound, [&](std::int32_t sphere) { region.spheres.add(sphere - organ_.first); });
-    // Of its patches and their vertices no more wait than it has corners.
+    // Of its patches and their vertices no more wait than it has corners. Memory for all of what a cut left would be
+    // much at once.
+    if (patch != nullptr) continue;
     const auto triangles =
         surface.patches()[std::size_t(bound.last) - 1].last - surface.patches()[std::size_t(bound.first)].first;
     region.waiting.reserve(std::size_t(3 * triangles));

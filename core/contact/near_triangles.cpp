@@ -57,7 +57,9 @@ void NearTriangles::find_groups() {
     for (std::size_t number = 0; number < surface.groups().size(); ++number) {
       Group& group = groups_.emplace_back(Group{part, number});
       const surface::NearSurface::Bound& bound = surface.groups()[number];
+      group.spheres.reserve(std::size_t(bound.last_sphere - bound.first_sphere));
       surface.for_each_sphere(bound, [&](std::int32_t sphere) { group.spheres.add(sphere); });
+      if (part >= whole_) continue;  // memory for all of what a cut left would be much at once
       group.found.reserve(std::size_t(surface.patches()[std::size_t(bound.last) - 1].last -
                                       surface.patches()[std::size_t(bound.first)].first));
     }
