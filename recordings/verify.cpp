@@ -82,7 +82,7 @@ bool locate(const State& recorded, const State& replayed, Verdict& verdict) {
   for_each_field(recorded, Flatten{before});
   for_each_field(replayed, Flatten{now});
   std::string group;
-  // Only a State whose second hand did something has the fields of it, after all others.
+  // The last fields are only in a State whose second hand did something, and in one with open cuts.
   for (std::size_t f = 0; f < std::min(before.size(), now.size()); ++f) {
     if (!group.empty() && group_of(before[f].name) != group) break;
     const std::size_t count = std::min(before[f].values.size(), now[f].values.size());

@@ -66,6 +66,8 @@ class Contacts {
 
   /// Does at once what the first tick with a blade needs.
   void prepare() { cuts_.prepare(); }
+  /// Whether begin_tick() will change `state`.
+  bool changes(const State& state, bool cuts) const { return cuts_.changes(state, cuts); }
   /// Opens and follows what is cut, at the start of a tick from `state`. `cuts`: a hand holds a blade.
   void begin_tick(State& state, bool cuts) { cuts_.begin_tick(state, cuts); }
 

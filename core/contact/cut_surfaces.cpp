@@ -5,7 +5,6 @@
 #include <ranges>
 #include <utility>
 
-#include "core/contact/open_cuts.h"
 #include "core/cutting/swept_surface.h"
 
 namespace ctpm::contact {
@@ -46,6 +45,7 @@ CutSurfaces::~CutSurfaces() {
 
 void CutSurfaces::prepare() {
   if (!opening_) return;
+  if (worker_.joinable()) worker_.join();
   is_prepared_ = true;
   for (auto& organ : opening_->organs)
     if (organ) organ->prepare();
@@ -73,7 +73,7 @@ void CutSurfaces::start(Followed& followed, const State& state, const TouchedCut
   surface->swept_organ.assign(state.swept_organ.begin(),
                               state.swept_organ.begin() + std::ptrdiff_t(surface->swept.size()));
   surface->axial_severed = cuts.axial_severed;
-  followed.of = surface, followed.is_cut = false;
+  followed.is_cut = false;
   followed.stop.request_stop(), followed.stop = {};
 
   std::promise<std::vector<std::uint8_t>> hidden;
@@ -82,6 +82,7 @@ void CutSurfaces::start(Followed& followed, const State& state, const TouchedCut
   worker_ = std::jthread([this, surface, before = std::move(worker_), hidden = std::move(hidden), &followed, &other,
                           stop = followed.stop.get_token()]() mutable {
     if (before.joinable()) before.join();
+    if (stop.stop_requested()) return;  // nobody waits for it any more
     try {
       for (auto& organ : followed.organs)
         if (organ) organ->follow(surface);
@@ -98,6 +99,7 @@ void CutSurfaces::start(Followed& followed, const State& state, const TouchedCut
     } catch (const std::bad_alloc&) {  // the tick that needs it makes it
     }
   });
+  followed.of = surface;
 }
 
 bool CutSurfaces::wait_near(const Box& region, const StateView& state, const surface::NearSurface& organs) {

@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/contact/open_cuts.h"
 #include "core/cutbody/cut_patches.h"
 #include "core/cutbody/cut_points.h"
 #include "core/model/box.h"
@@ -36,6 +37,8 @@ class CutSurfaces {
   /// Builds at once what the first cut needs; what the second one needs is then built beside the ticks.
   void prepare();
 
+  /// Whether begin_tick() will change `state`.
+  bool changes(const State& state, bool cuts) const { return open_ && changes_open_cuts(cuts, state); }
   /// Opens cuts of `state` and follows them from the start of a tick on. `cuts`: a blade is held.
   void begin_tick(State& state, bool cuts);
 
@@ -106,7 +109,8 @@ class CutSurfaces {
   struct Followed {
     std::vector<std::optional<cutbody::CutPatches>> organs;  ///< empty where an organ's cuts are not touched
     std::shared_ptr<const State> of;  ///< only with the cuts' swept surface and severed elements; null: nothing was cut
-    /// What will be in `hidden`. While it is valid the worker has `organs` to itself.
+    /// What will be in `hidden`. While it is valid the worker has `organs` to itself; later it may only prepare those
+    /// in which nothing is cut yet.
     std::future<std::vector<std::uint8_t>> follows;
     std::stop_source stop;  ///< of the worker's making of patches
     bool is_cut = false;

@@ -142,7 +142,8 @@ void CutPatches::prepare() {
 
 void CutPatches::follow(std::shared_ptr<const State> state) {
   const bool was_followed = parts_ && parts_->seen;
-  if (cutting::sweeps_same(was_followed ? *parts_->seen : State{}, *state, std::int32_t(organ_))) {
+  if (cutting::sweeps_same(was_followed ? *parts_->seen : State{}, *state, std::int32_t(organ_)) &&
+      (!is_cut() || severs_same(*parts_->seen, *state))) {
     if (was_followed)
       for (Binder* binder : {&parts_->ahead, &parts_->asked})
         if (binder->binding) binder->binding->forget();
@@ -159,6 +160,18 @@ void CutPatches::follow(std::shared_ptr<const State> state) {
     parts_.reset(), covered_.clear();  // they may be half done
     throw;
   }
+}
+
+/// Whether two States know the same elements of the organ to be severed.
+bool CutPatches::severs_same(const State& a, const State& b) const {
+  const OrganRange& organ = model_.organs[organ_];
+  const auto is_severed = [](const State& state, std::size_t e) {
+    return !state.axial_severed.empty() && state.axial_severed[e] != 0;
+  };
+  for (std::size_t e = 0; e < model_.axial.size(); ++e)
+    if (const std::int32_t sphere = model_.axial.a[e] - organ.first; sphere >= 0 && sphere < organ.count)
+      if (is_severed(a, e) != is_severed(b, e)) return false;
+  return true;
 }
 
 void CutPatches::make_all(const std::stop_token& stop) {

@@ -40,8 +40,8 @@ struct CutPatch {
 
 /// The surface of an organ near its cuts as CutBody draws it, in patches: one for each piece of tissue in each block of
 /// the grid that is within two blocks of a cut: covers(). Elsewhere the organ's own surface stands. Both fit together:
-/// no part of the body's surface is in both or in none. A function of the Model and of the swept surface alone, however
-/// it was followed.
+/// no part of the body's surface is in both or in none. A function of the Model, of the swept surface and of
+/// the severed elements alone, however they were followed.
 class CutPatches {
  public:
   using Index = CutGrid::Index;
@@ -54,8 +54,8 @@ class CutPatches {
   /// Does at once what the first cut needs: a grid over the organ.
   void prepare();
 
-  /// Follows the swept surface of `state`. Where it is the same in this organ, patches stay, and what would make new
-  /// ones fast is forgotten.
+  /// Follows the swept surface of `state` and what it has severed. Where both are the same in this organ, patches stay,
+  /// and what would make new ones fast is forgotten.
   void follow(std::shared_ptr<const State> state);
   /// Makes patches until it is told to stop. One other thread may ask for patches meanwhile, and helps to make them:
   /// what spheres they follow, and so how far they may move, is known only when all are made.
@@ -99,6 +99,7 @@ class CutPatches {
     std::vector<Index> bins{};  ///< of the spheres that it follows
     Box box{Vec3{}};            ///< within which it is now [m]
   };
+  bool severs_same(const State& a, const State& b) const;
   void cover();
   void make_rest();
   bool make_once(Covered& covered, Binder& binder);

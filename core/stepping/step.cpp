@@ -193,7 +193,7 @@ StepReport Stepper::step(State& state, const Inputs& inputs) {
   parts.reserve(state);
   // An integrator leaves State unchanged until its substep is committed. Ticks that change State more than once work on
   // the trial state.
-  const bool changes_once = !cuts && parts.choice.substeps == 1;
+  const bool changes_once = !cuts && parts.choice.substeps == 1 && !parts.contacts.changes(state, cuts);
   if (!changes_once) parts.trial = state;
   State& current = changes_once ? state : parts.trial;
   parts.begin_cuts(state, inputs, tools, current);

@@ -72,7 +72,7 @@ struct StepperOptions {
 
 /// Advances States of one Model. It holds the kernels of the Model, their scratch memory and the threads, and no
 /// simulated state: any State of the Model may be given at any call, in any order. step() allocates scratch memory in
-/// the first tick and in the first one with a scalpel, and nothing afterwards.
+/// the first tick and in the first one with a scalpel, and afterwards only where cuts open or are touched.
 class Stepper {
  public:
   /// `model` must outlive the Stepper.

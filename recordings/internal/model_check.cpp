@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/contact/open_cuts.h"
 #include "core/cutbody/cut_points.h"
 #include "core/model/fields.h"
 #include "recordings/internal/extent_check.h"
@@ -387,6 +388,8 @@ void check_edge(Checker& check, const Model& model, const State& state) {
   }
   check.require((state.opening_cuts_at > 0) == (state.opening_cuts.rows > 0), "opening_cuts.at",
                 "must be set exactly where rows open");
+  check.require(state.opening_cuts_at <= state.tick + contact::ticks_until_open(model), "opening_cuts.at",
+                "is later than a cut opens");
   check.require(state.opening_cuts_at == 0 || state.opening_cuts.rows >= state.open_cuts.rows, "opening_cuts",
                 "has fewer rows than are open");
 }

@@ -4,9 +4,12 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 
 #include "core/contact/open_cuts.h"
+#include "core/cutbody/cut_patches.h"
 #include "core/cutting/swept_surface.h"
+#include "core/stepping/step.h"
 #include "tests/core/cut_blocks.h"
 
 namespace ctpm {
@@ -36,6 +39,9 @@ class OpenCuts : public ::testing::Test {
     for (std::size_t n = 0; n < kEdgeNodes; ++n) state_.blade_trail.set(n, state_.swept[last + n]);
   }
 
+  /// In the organ, or away from all.
+  void put_edge_in(std::int32_t organ) { state_.edge_organ.assign(kEdgeNodes, organ); }
+
   void go_on(std::int64_t ticks, bool holds_blade) {
     for (const std::int64_t end = state_.tick + ticks; state_.tick < end; ++state_.tick)
       contact::follow_open_cuts(model_, holds_blade, state_);
@@ -48,7 +54,7 @@ class OpenCuts : public ::testing::Test {
 };
 
 TEST_F(OpenCuts, ACutOpensSomeTimeAfterTheBladeHasLeftIt) {
-  put_blade_in_last_row();
+  put_blade_in_last_row(), put_edge_in(0);
   go_on(3 * after_, true);
   EXPECT_EQ(state_.opening_cuts_at, 0) << "the blade is in it";
   const std::int64_t left = state_.tick;
@@ -62,6 +68,49 @@ TEST_F(OpenCuts, ACutOpensSomeTimeAfterTheBladeHasLeftIt) {
   EXPECT_EQ(state_.opening_cuts_at, 0);
 }
 
+TEST_F(OpenCuts, ABladeThatIsHeldFarAwayHasLeftThem) {
+  // As after a jump: the front stays where it was.
+  put_blade_in_last_row(), put_edge_in(-1);
+  go_on(after_ + 1, true);
+  EXPECT_EQ(state_.open_cuts, whole_);
+}
+
+TEST_F(OpenCuts, AStateThatKnowsNoFrontHasNoBladeInThem) {
+  state_.blade_trail.resize(0);
+  go_on(after_ + 1, true);
+  EXPECT_EQ(state_.open_cuts, whole_);
+}
+
+TEST_F(OpenCuts, ARefusedTickNeitherOpensThemNorBeginsTo) {
+  Model model = model_;
+  testing::use_integrator(model, Integrator::backward_euler);
+  for (const bool opens : {false, true}) {
+    State state = state_;
+    if (opens) state.opening_cuts = whole_, state.opening_cuts_at = 1, state.tick = 1;
+    for (double& v : state.velocity.y) v = 1e12;
+    state.velocity.y[40] = 1e300;
+    const State before = state;
+    EXPECT_EQ(stepping::Stepper(model).step(state, {}).status, stepping::StepStatus::diverged);
+    EXPECT_EQ(state.open_cuts, before.open_cuts) << opens;
+    EXPECT_EQ(state.opening_cuts, before.opening_cuts) << opens;
+    EXPECT_EQ(state.opening_cuts_at, before.opening_cuts_at) << opens;
+  }
+}
+
+TEST_F(OpenCuts, PatchesKnowWhatIsSeveredAlsoWhereTheRowsAreTheSame) {
+  State of_rows = state_, of_all = state_;
+  of_rows.axial_severed.clear();
+  of_all.axial_severed.assign(of_all.axial_severed.size(), 1);
+  const auto pieces = [](const cutbody::CutPatches& patches) { return patches.piece_of_sphere(); };
+  cutbody::CutPatches followed(model_, 0), anew(model_, 0);
+  followed.follow(std::make_shared<const State>(of_rows));
+  const auto before = pieces(followed);
+  for (const State* state : {&of_all, &of_rows, &of_all}) followed.follow(std::make_shared<const State>(*state));
+  anew.follow(std::make_shared<const State>(of_all));
+  EXPECT_NE(before, pieces(anew));
+  EXPECT_EQ(pieces(followed), pieces(anew));
+}
+
 TEST_F(OpenCuts, WhatIsCutMeanwhileDoesNotKeepThemClosed) {
   go_on(after_ / 2, false);
   cut_along(0.0113);
@@ -73,7 +122,7 @@ TEST_F(OpenCuts, WhatIsCutMeanwhileDoesNotKeepThemClosed) {
 
 TEST_F(OpenCuts, ABladeThatGoesOnNeitherClosesNorMovesThem) {
   go_on(after_ + 1, false);
-  put_blade_in_last_row();
+  put_blade_in_last_row(), put_edge_in(0);
   const Vec3Array before = state_.swept;
   cutting::NewlySwept newly;
   newly.fill(1), newly.back() = 0;
