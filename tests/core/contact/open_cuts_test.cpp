@@ -2,14 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
+#include "core/contact/cut_surfaces.h"
 #include "core/contact/open_cuts.h"
 #include "core/cutbody/cut_patches.h"
 #include "core/cutting/swept_surface.h"
 #include "core/stepping/step.h"
+#include "core/surface/near_surface.h"
 #include "tests/core/cut_blocks.h"
 
 namespace ctpm {
@@ -109,6 +113,35 @@ TEST_F(OpenCuts, PatchesKnowWhatIsSeveredAlsoWhereTheRowsAreTheSame) {
   anew.follow(std::make_shared<const State>(of_all));
   EXPECT_NE(before, pieces(anew));
   EXPECT_EQ(pieces(followed), pieces(anew));
+}
+
+/// What of a State is touched: of each patch its block, its piece and its size.
+std::vector<std::array<std::int64_t, 3>> touched_patches(const Model& model, contact::CutSurfaces& cuts, State state) {
+  surface::NearSurface own(model, 0, 1);
+  const Box everywhere(Vec3{-1, -1, -1}, Vec3{1, 1, 1});
+  cuts.begin_tick(state, false), cuts.begin(state.position), own.begin(state.position);
+  (void)cuts.wait_near(everywhere, state, own);
+  std::vector<std::array<std::int64_t, 3>> seen;
+  cuts.near(everywhere, [&](const cutbody::CutPatch& patch) {
+    seen.push_back({patch.block, patch.piece, std::int64_t(patch.body.surface.vertex_count())});
+  });
+  return seen;
+}
+
+TEST_F(OpenCuts, AreTouchedAsTheStateSaysHoweverItJumps) {
+  std::vector<State> states{rest_state(model_)};
+  for (const double next : {0.0113, 0.0}) {
+    go_on(after_ / 2, false), states.push_back(state_);
+    go_on(after_ / 2 + 1, false), states.push_back(state_);
+    if (next > 0) cut_along(next);
+  }
+  contact::CutSurfaces jumps(model_);
+  for (const std::size_t to : {4, 0, 1, 2, 3, 4, 2, 4, 3, 0, 2, 1, 4}) {
+    contact::CutSurfaces anew(model_);
+    const auto seen = touched_patches(model_, jumps, states[to]);
+    EXPECT_EQ(seen, touched_patches(model_, anew, states[to])) << to;
+    EXPECT_EQ(seen.empty(), states[to].open_cuts.rows == 0) << to;
+  }
 }
 
 TEST_F(OpenCuts, WhatIsCutMeanwhileDoesNotKeepThemClosed) {
