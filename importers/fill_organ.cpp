@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <limits>
 #include <numeric>
@@ -283,21 +282,6 @@ void note_flat(const FilledOrgan& organ, std::vector<Finding>& findings) {
 }
 
 }  // namespace
-
-double spacing_of(const FillOptions& options) {
-  return 2 * options.sphere_radius + (options.gap < 0 ? options.sphere_radius : options.gap);
-}
-
-double expected_spheres(const CheckedMesh& mesh, double spacing) {
-  return mesh.volume / (spacing * spacing * spacing) + 0.5 * mesh.area / (spacing * spacing);
-}
-
-std::string roughly(double number) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%.2g", number);
-  std::snprintf(text, sizeof text, "%.10g", std::strtod(text, nullptr));
-  return text;
-}
 
 double radius_for(const CheckedMesh& mesh, std::int64_t spheres) {
   // The number falls with the spacing cubed inside and squared at the surface; a step between both converges for

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "importers/fill.h"
 
 // What the size of a mesh says before it is filled.
@@ -16,8 +14,5 @@ double spacing_of(const FillOptions& options);
 /// About how many spheres that distance [m] apart cover a mesh: those of its volume, and half a cell's for each at its
 /// surface, which a thin wall has most of.
 double expected_spheres(const CheckedMesh& mesh, double spacing);
-
-/// A number to two digits, for estimates: "22000".
-std::string roughly(double number);
 
 }  // namespace ctpm::importers

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 namespace ctpm::importers {
 namespace {
@@ -20,6 +21,13 @@ std::string mm_text(double metres) { return mm_number(metres) + " mm"; }
 
 std::string place_text(Vec3 metres) {
   return "(" + mm_number(metres.x) + ", " + mm_number(metres.y) + ", " + mm_number(metres.z) + ") mm";
+}
+
+std::string roughly(double number) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.2g", number);
+  std::snprintf(text, sizeof text, "%.10g", std::strtod(text, nullptr));
+  return text;
 }
 
 std::string counted(std::int64_t count, const std::string& noun) {

@@ -11,6 +11,8 @@ namespace ctpm::importers {
 std::string mm_text(double metres);
 /// Formats a position [m]: "(12.35, -4, 0) mm".
 std::string place_text(Vec3 metres);
+/// A number to two digits, for estimates: "22000".
+std::string roughly(double number);
 /// "1 hole", "3 holes".
 std::string counted(std::int64_t count, const std::string& noun);
 

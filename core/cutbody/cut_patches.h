@@ -40,8 +40,8 @@ struct CutPatch {
 
 /// The surface of an organ near its cuts as CutBody draws it, in patches: one for each piece of tissue in each block of
 /// the grid that is within two blocks of a cut: covers(). Elsewhere the organ's own surface stands. Both fit together:
-/// no part of the body's surface is in both or in none. A function of the Model, of the swept surface and of
-/// the severed elements alone, however they were followed.
+/// no part of the body's surface is in both or in none. A function of the Model, of the swept surface
+/// and of the severed elements alone, however they were followed.
 class CutPatches {
  public:
   using Index = CutGrid::Index;

@@ -67,7 +67,8 @@ double depth_along_blade(const cutting::TissueDepth& tissue, std::size_t of_orga
     if (const Vec3 below = 2 * place[0] - place[1]; !organ.holds(below)) place.insert(place.begin(), below);
   const std::optional<Vec3> deepest = enter(organ, place.begin(), place.end());
   if (!deepest) return 0;
-  const Vec3 highest = *enter(organ, place.rbegin(), place.rend());
+  // A single place that is inside by rounding may not be found again.
+  const Vec3 highest = enter(organ, place.rbegin(), place.rend()).value_or(*deepest);
   const Vec3 own = highest - *deepest;
   const bool is_along_earlier = dot(own, way) >= 0 && norm(cross(own, way)) <= kHeldBehind * norm(way);
   if (norm(own) >= norm(way) || !is_along_earlier) way = own;
