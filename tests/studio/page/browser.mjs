@@ -15,7 +15,7 @@ const require = createRequire(join(packages, "package.json"));
 const { chromium } = require("playwright-core");
 const axe = require.resolve("axe-core/axe.min.js");
 
-const kFlags = [
+export const kFlags = [
   "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
   // As on a machine without a GPU: the processor draws the page, and WebGL where a page asks for it.
   "--disable-gpu", "--enable-unsafe-swiftshader",
@@ -73,12 +73,12 @@ export async function ctpmBeside(folder, ...words) {
 }
 
 /** Serves `folder`; returns the process and the address that it prints. */
-async function serve(folder, port, more = []) {
+export async function serve(folder, port, more = []) {
   const server = spawn(program, ["studio", folder, "--no-open", "--port", String(port), ...more], { env: kBare, stdio: ["ignore", "pipe", "ignore"] });
   return { server, address: await new Promise((resolve) => server.stdout.once("data", (data) => resolve(String(data).trim()))) };
 }
 
-function ended(server) {
+export function ended(server) {
   return new Promise((resolve) => server.once("exit", resolve));
 }
 
