@@ -27,7 +27,7 @@ struct FrameFacts {
   bool is_glimpse = false;      ///< the tissue is between two States that are known; the replayed picture follows
   std::int64_t tick = 0;        ///< ticks done
   Vec3 force;                   ///< of the tissue on the tool [N]
-  double depth = 0;             ///< [m]
+  double depth = 0;             ///< of a ball in the organ; of a training's blade, along it [m]
   std::int32_t contacts = 0;    ///< spheres touched
   std::int64_t severed = 0;     ///< elements severed so far
   Vec3 hand;                    ///< position of the hand that leads the tool [m]; of a replay: the tool's

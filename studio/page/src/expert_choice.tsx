@@ -28,20 +28,23 @@ function groupsOf(paths: string[], scenes: SceneOfSession[], sceneKey: string): 
   return [...groups].filter(([, members]) => members.length > 0).map(([title, members]) => [title, expertsFirst(members)]);
 }
 
-/** `sceneKey`: of the scene that is chosen; empty: none is. Sessions that cannot be read are left out once that is known. */
+const kProposed = "*"; // no session is called that
+
+/** `sceneKey`: of the scene that is chosen; empty: none is. `expert`: null is whichever is proposed once there is a scene. Sessions that cannot be read are left out once that is known. */
 export function ExpertChoice({ listing, scenes, sceneKey, expert, onExpert, use }: {
   listing: FileEntry[];
   scenes: SceneOfSession[];
   sceneKey: string;
-  expert: string;
-  onExpert: (path: string) => void;
+  expert: string | null;
+  onExpert: (path: string | null) => void;
   use: string;
 }) {
   const options = (paths: string[]) => paths.map((path) => <option key={path} value={path}>{path}</option>);
   return (
     <label class="field">
       <span>the expert's session, {use}</span>
-      <select value={expert} onChange={(e) => onExpert(e.currentTarget.value)}>
+      <select value={expert ?? kProposed} onChange={(e) => onExpert(e.currentTarget.value === kProposed ? null : e.currentTarget.value)}>
+        {expert === null && <option value={kProposed}>an expert's of the scene, if there is one</option>}
         <option value="">none</option>
         {groupsOf(listing.map(({ path }) => path), scenes, sceneKey).map(([title, paths]) => (title ? <optgroup key={title} label={title}>{options(paths)}</optgroup> : options(paths)))}
       </select>

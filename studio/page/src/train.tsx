@@ -25,17 +25,24 @@ function showForce(bar: HTMLElement | null, trainer: Trainer): void {
   bar?.style.setProperty("transform", `scaleY(${Math.min(1, force / (trainer.scene?.view.damage_force_n || kForceLimit))})`);
 }
 
-/** Moves the ring that shows where a pointer takes the tool up. */
+const kLabelEdge = 16; // of the picture, that a label leaves free [px]
+
+/** Moves the ring that shows where a pointer takes the tool up; what is written below it stays in the picture. */
 function placeRing(ring: HTMLElement | null, trainer: Trainer): void {
   if (!ring) return;
   const at = trainer.toolPixel;
   ring.hidden = at === null;
-  if (at) ring.style.setProperty("transform", `translate(${at.x}px, ${at.y}px)`);
+  if (!at) return;
+  const half = (ring.firstElementChild!.clientWidth + kLabelEdge) / 2, width = ring.parentElement!.clientWidth;
+  ring.style.setProperty("transform", `translate(${at.x}px, ${at.y}px)`);
+  ring.style.setProperty("--aside", `${Math.max(half, Math.min(width - half, at.x)) - at.x}px`);
 }
 
 type Phase = "choose" | "loading" | "running" | "ended";
 
 const kUsualName = "mine-1.ctpm";
+
+const withEnding = (name: string) => (name === "" || name.endsWith(".ctpm") ? name : `${name}.ctpm`);
 
 /** A name for a session that does not exist yet: that name, or with the next number. */
 function freeName({ sessions }: Listing, name: string): string {
@@ -114,7 +121,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
     loading.current = new AbortController();
     try {
       // Somebody else may have taken a name meanwhile.
-      const free = like || (chosenName === null && kUsualName), name = free ? freeName(await connection.call<Listing>("folder.list"), free) : chosenName!;
+      const free = like || (chosenName === null && kUsualName), name = free ? freeName(await connection.call<Listing>("folder.list"), free) : withEnding(chosenName!);
       setOutput(name);
       const begun = await trainer.begin(path, path === tryScene && !name ? tryText : undefined, name || undefined,
         path === tryScene ? undefined : deviceParameters(device), path === tryScene ? tryView : undefined, loading.current.signal);
@@ -146,13 +153,23 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
     if (!trainer || phase !== "running") return;
     const press = (event: KeyboardEvent) => {
       if ((event.target as HTMLElement).closest("input, textarea, select") || event.ctrlKey || event.metaKey || event.altKey) return;
-      if (event.key === "Escape") void trainer.end();
-      else if (event.key.toLowerCase() === "m") sound.current.switch(), setTick((t) => t + 1);
+      const isLocked = document.pointerLockElement !== null;
+      if (event.key === "Escape" && !isLocked) void trainer.end();
+      else if (event.key === "Escape" || (event.key === " " && trainer.isHeld)) document.exitPointerLock?.(), trainer.letGo();
+      else if (event.key === " " && !(event.target as HTMLElement).closest("button")) trainer.isHeld = true;
+      else if (event.key.toLowerCase() === "m") sound.current.switch();
       else if (!trainer.press(event.key, event.shiftKey)) return;
+      setTick((t) => t + 1);
       event.preventDefault();
     };
+    // Whoever takes the mouse back goes elsewhere with it.
+    const unlock = () => document.pointerLockElement || (trainer.letGo(), setTick((t) => t + 1));
     addEventListener("keydown", press);
-    return () => removeEventListener("keydown", press);
+    document.addEventListener("pointerlockchange", unlock);
+    return () => {
+      removeEventListener("keydown", press);
+      document.removeEventListener("pointerlockchange", unlock);
+    };
   }, [trainer, phase]);
 
   useEffect(() => {
@@ -282,7 +299,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
       <div class="time">
         {phase === "running" && trainer && view && (
           <div class="transport">
-            <button type="button" class="main" onClick={() => void trainer.end()}>End</button>
+            <button type="button" class="main" onClick={() => void trainer.end()}>{!isTouch && <kbd>Esc</kbd>} End</button>
             {trainer.handCount > 1 && !trainer.awaited && (
               <div class="buttons" role="group" aria-label="Hand">
                 {[0, 1].map((hand) => (
@@ -295,7 +312,10 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
             {!trainer.awaited && (
               <div class="buttons" role="group" aria-label="Tool">
                 {view.tools.map((tool, i) => (
-                  <button key={tool.name} type="button" aria-pressed={trainer.tool === i} disabled={trainer.isTaken(i)} onClick={() => trainer.setTool(i)}>
+                  <button key={tool.name} type="button" aria-pressed={trainer.tool === i} disabled={trainer.isTaken(i)} onClick={() => {
+                    trainer.setTool(i);
+                    setTick((t) => t + 1);
+                  }}>
                     <kbd>{i + 1}</kbd> {tool.name}
                   </button>
                 ))}
@@ -308,7 +328,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
                 {kHeld.map(([text, key]) => <HeldButton key={key} text={text} onHeld={() => trainer.press(key, false)} />)}
               </div>
             )}
-            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · C: next camera · Esc: end</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}{isTouch ? "one finger: move · two: look around" : "mouse, arrows: move · click: take up the tool and hold the mouse · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · C: next camera · Esc: end"}</span>}
+            {trainer.awaited ? <span class="hint">the device leads · mouse and wheel: look around · C: next camera</span> : <span class="hint">{trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : ""}{isTouch ? "one finger: move · two: look around" : `mouse, arrows: move · Space: let go of the tool, or take it up · click: hold the mouse · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · C: next camera${trainer.cameraName && ` (${trainer.cameraName})`}`}</span>}
           </div>
         )}
       </div>
@@ -320,7 +340,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
               <input value={phase === "loading" ? output : chosenName ?? freeName(listing, kUsualName)} disabled={phase === "loading"} onInput={(e) => setChosenName(e.currentTarget.value)} />
             </label>
             <DeviceForm choice={device} onChoice={setDevice} isDisabled={phase === "loading"} />
-            <ExpertChoice listing={listing.sessions} scenes={scenes} sceneKey={sceneKey} expert={expert} onExpert={setChosenExpert} use="shown as a ghost" />
+            <ExpertChoice listing={listing.sessions} scenes={scenes} sceneKey={sceneKey} expert={phase === "choose" ? chosenExpert : expert} onExpert={setChosenExpert} use="shown as a ghost" />
             {device.how && chosenName !== "" && <ShownCommand text={command("record", scene || "SCENE.json", "-o", chosenName ?? freeName(listing, kUsualName), ...deviceWords(device))} />}
             {phase === "loading" && <button type="button" onClick={() => loading.current?.abort()}>Cancel</button>}
           </Section>
@@ -334,7 +354,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
                   const of = hands.length < 2 ? "" : i === 0 ? ", right" : ", left";
                   return [
                     [`force${of}`, newtons(Math.hypot(...hand.force))],
-                    [`depth${of}`, view?.tools[hand.tool]?.kind === "scalpel" ? "–" : millimetres(hand.depth, 2)], // a blade has none
+                    [`depth${of}`, millimetres(hand.depth, 2), "How far a ball dents the organ, or a blade is in it"],
                     [`touched${of}`, `${hand.contacts} points`],
                   ];
                 }),
@@ -347,7 +367,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
               ]} />
             </Section>
             <Section title="Expert">
-              <ExpertChoice listing={listing.sessions} scenes={scenes} sceneKey={sceneKey} expert={expert} onExpert={setChosenExpert} use="shown as a ghost" />
+              <ExpertChoice listing={listing.sessions.filter(({ path }) => path !== output)} scenes={scenes} sceneKey={sceneKey} expert={expert} onExpert={setChosenExpert} use="shown as a ghost" />
               {trainer?.isExpertOfOtherScene && <p class="warning" role="alert">{expert} is of another scene than this one: its ghost is not shown, and it cannot be compared with.</p>}
               {expert && trainer && !trainer.isExpertOfOtherScene && (
                 <label class="field">
@@ -386,7 +406,7 @@ function Ended({ connection, listing, scenes, sceneKey, ended, expert, onExpert,
   sceneKey: string;
   ended: EndedTraining;
   expert: string;
-  onExpert: (path: string) => void;
+  onExpert: (path: string | null) => void;
   onReview: (place: Place) => void;
   onAgain: () => void;
   onChoose: () => void; // of another scene
@@ -435,7 +455,7 @@ function Ended({ connection, listing, scenes, sceneKey, ended, expert, onExpert,
           {otherScene && <p class="warning" role="alert">{otherScene}. They cannot be compared.</p>}
           {progress ? <Working what={verdict ? "comparing" : "verifying"} done={progress[0]} total={progress[1]} onCancel={() => running.current?.abort()} />
             : <button type="button" class="main" onClick={() => void compare()}>{isCompared ? "Verify and compare" : "Verify"}</button>}
-          {verdict && <p class={verdict.same ? "good" : "warning"} role="status">{verdict.text}</p>}
+          {verdict && <p class={verdict.same ? "good" : "warning"} role="status">The recording, replayed: {verdict.text}</p>}
           <Problems error={error} />
         </Section>
       )}
@@ -446,7 +466,7 @@ function Ended({ connection, listing, scenes, sceneKey, ended, expert, onExpert,
             ["recorded as", path || "not recorded"],
             ["duration", seconds(ended.ticks * (ended.tick_s ?? 1e-3), 1)],
             ["largest force", newtons(ended.max_force_n ?? 0)],
-            ["largest depth", millimetres(ended.max_depth_m ?? 0, 2)],
+            ["deepest dent", millimetres(ended.max_depth_m ?? 0, 2)],
             ["severed", `${ended.severed} elements`],
             ["late steps", String(ended.late_ticks)],
             ["behind the clock", behind(ended.slip_s ?? 0, ended.slip_max_s ?? 0)],

@@ -56,6 +56,7 @@ export class Trainer {
   onFailing: (problem: string) => void = () => {}; // what is recorded cannot be saved now
   isLedByKeys = false; // and not by the pointer since
   private held = false;
+  private isLetGo = false; // by a key, with the pointer still beside it
   private isLive = false; // its frames come
   private bears = { force_n: Infinity, depth_m: 0 }; // the hand, before it gives way
   private camera = 0; // of the scene, through which the hand looked last
@@ -191,8 +192,14 @@ export class Trainer {
   /** Takes the tool up where it is, with a pointer that comes to it at a place of the picture [px]. What holds it does not
       move it yet, so that it is never carried from where the pointer came in. */
   reach(x: number, y: number): void {
-    const tool = this.toolPixel;
-    this.isHeld ||= tool !== null && Math.hypot(tool.x - x, tool.y - y) < kTakeUp;
+    const tool = this.toolPixel, isNear = tool !== null && Math.hypot(tool.x - x, tool.y - y) < kTakeUp;
+    if (!isNear) this.isLetGo = false;
+    this.isHeld ||= isNear && !this.isLetGo;
+  }
+
+  /** The tool stays where it is, while the pointer goes elsewhere: until it has gone away and come back. */
+  letGo(): void {
+    this.isHeld = false, this.isLetGo = true;
   }
 
   /** Moves the hand in its plane, by pixels of the picture. */
@@ -237,6 +244,11 @@ export class Trainer {
     if (cameras.length > 0) this.viewer.look(cameras[(this.camera = (this.camera + 1) % cameras.length)]);
   }
 
+  /** Name of the scene's camera through which the hand looked last. */
+  get cameraName(): string {
+    return this.view?.cameras[this.camera]?.name ?? "";
+  }
+
   /** Moves the hand as a gamepad asks, for the time since the last pose. */
   private steer(): void {
     const pad = readGamepad();
@@ -264,8 +276,14 @@ export class Trainer {
   get givesWay(): { force_n: number } | { depth_m: number } | null {
     const { force_n, depth_m } = this.bears, frame = this.ownFrame;
     if (!frame || this.awaited) return null;
-    if (depth_m > 0 && frame.depth >= depth_m) return { depth_m };
+    if (depth_m > 0 && this.pressedDepth >= depth_m) return { depth_m };
     return Math.hypot(...frame.force) >= kGivesWay * force_n ? { force_n } : null;
+  }
+
+  /** How deep the tool dents the tissue [m]; a blade parts it. */
+  private get pressedDepth(): number {
+    const frame = this.ownFrame;
+    return frame && this.view?.tools[frame.tool]?.kind !== "scalpel" ? frame.depth : 0;
   }
 
   /** The hand follows the pointer less where the tissue resists. */
@@ -293,7 +311,7 @@ export class Trainer {
   /** Where the tissue resists firmly the hand stays near its tool: what it gives way by need not come back first. */
   private keepNearTool(): void {
     const frame = this.ownFrame, force = Math.hypot(...(frame?.force ?? [0])), { force_n, depth_m } = this.bears;
-    if (!frame || (force < kFirm * force_n && (depth_m === 0 || frame.depth < kFirm * depth_m))) return;
+    if (!frame || (force < kFirm * force_n && (depth_m === 0 || this.pressedDepth < kFirm * depth_m))) return;
     const { target } = this.own, tool = new three.Vector3(...frame.position);
     target.sub(tool).clampLength(0, force / kSpring + kSlack).add(tool);
   }
