@@ -230,6 +230,7 @@ step("saving is by key, and never over somebody else's change", async () => {
   assert.equal(onDisk(), changed + "\n\n");
   await button("Keep mine").click();
   await page.waitForSelector(".conflict", { state: "detached" });
+  assert.equal(await page.locator(".earlier-visit").count(), 0, "undo does not lead to the file that is there now");
   assert.equal(onDisk(), changed + "\n\n");
   assert.equal(await text(), mine);
   await save();
