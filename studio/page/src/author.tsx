@@ -357,11 +357,13 @@ function About({ scene }: { scene: AuthorScene }) {
     <>
       {shown && (
         <Section title={shown.view.name}>
-          <Readings rows={[
-            ...shown.view.organs.map((organ): [string, string] => [organ.name, `${organ.spheres} spheres in ${organ.layers} layers`]),
-            ["elements", String(shown.elements)],
-            ["tools", shown.view.tools.map((tool) => tool.name).join(", ") || "none"],
-          ]} />
+          <div class="numbers" aria-busy={scene.isRefilling}>
+            <Readings rows={[
+              ...shown.view.organs.map((organ): [string, string] => [organ.name, `${organ.spheres} spheres in ${organ.layers} layers`]),
+              ["elements", String(shown.elements)],
+              ["tools", shown.view.tools.map((tool) => tool.name).join(", ") || "none"],
+            ]} />
+          </div>
           <ShownCommand text={command("check", doc!.path)} />
         </Section>
       )}

@@ -252,7 +252,9 @@ step("the slider fills again: spheres, time per tick, scatter", async () => {
   const before = await reading(page, "spheres");
   await slider.focus();
   for (let i = 0; i < 12; ++i) await page.keyboard.press("ArrowLeft");
+  await page.waitForSelector("#panel .numbers[aria-busy=true]:has-text('a step takes')"); // numbers of the filling before
   await settled();
+  assert.equal(await page.locator("#panel .numbers[aria-busy=true]").count(), 0);
   await button("spheres").click();
   await page.waitForFunction(() => / ms it has$/.test([...document.querySelectorAll("#panel .readings div")].find((d) => d.textContent.startsWith("a step takes"))?.lastChild.textContent ?? ""));
   const spheres = await reading(page, "spheres"), time = await reading(page, "a step takes");
