@@ -20,6 +20,7 @@ import { kTurns, Viewer } from "./viewer";
 
 const kLookOnDisk = 2000; // [ms]
 const kPainting = "Painting anchors: arrow keys move the brush, Space paints, Shift and Space erase, Escape ends it";
+const kPaintingByHand = "A drag paints, with Shift it erases; A, D, W, S, + and - turn the view.";
 type Panel = "place" | "filling" | "scene";
 
 /** What the room works with, made when its canvas is there. */
@@ -94,11 +95,17 @@ export function Author({ connection, listing, onTry, onChanged }: {
     setPanel((shown) => (key && (shown === "scene" || (shown === "filling" && !/^organs\/\d+$/.test(key))) ? "place" : shown));
   };
 
+  /** Strokes add and remove anchors: what is selected by its place in a list would be another one afterwards. */
+  const paint = (radius: number | null) => {
+    if (brushRadius === null) setSelected("");
+    setBrushRadius(radius);
+  };
+
   // The picture follows the text.
   useLayoutEffect(() => {
     if (!desk || !scene) return;
     desk.gizmos.onSelect = (key) => key !== selected && select(key);
-    desk.gizmos.set(scene.stage, items, brushRadius === null ? selected : "", used);
+    desk.gizmos.set(scene.stage, items, brushRadius === null ? selected : "", used, brushRadius !== null);
     desk.brush.radius = brushRadius ?? desk.brush.radius;
     desk.brush.use(brushRadius === null ? null : scene.stage, items);
     scene.poseOrgans();
@@ -186,11 +193,11 @@ export function Author({ connection, listing, onTry, onChanged }: {
           }} />
         </label>
         {scene && doc && (
-          <Objects scene={scene} viewer={desk!.viewer} items={items} selected={selected} onSelect={select} brushRadius={brushRadius} onBrush={setBrushRadius} />
+          <Objects scene={scene} viewer={desk!.viewer} items={items} selected={selected} onSelect={select} brushRadius={brushRadius} onBrush={paint} />
         )}
       </nav>
       <div class="view">
-        <canvas ref={canvas} tabIndex={0} aria-label={brushRadius !== null ? kPainting : scene?.shown ? `The scene ${scene.shown.view.name} at rest; A, D, W, S, + and - turn the view` : "No scene"} />
+        <canvas ref={canvas} tabIndex={0} aria-label={brushRadius !== null ? kPainting : scene?.shown ? `The scene ${scene.shown.view.name} at rest; A, D, W, S, + and - turn the view, arrow keys move what is chosen` : "No scene"} />
         <div class="handles" ref={overlay} />
         {desk && doc && <ViewBar desk={desk} item={item} modes={modes} mode={used} onMode={setMode} onVersion={() => setVersion((v) => v + 1)} />}
         {!doc && !scene?.isLoading && (
@@ -230,7 +237,8 @@ export function Author({ connection, listing, onTry, onChanged }: {
               ))}
             </div>
             <div id="panel" class="panel" role="tabpanel" aria-labelledby={`tab-${panel}`} tabIndex={0}>
-              {panel === "place" && <Inspector scene={scene} item={item} viewer={desk!.viewer} onRemove={canRemove(item, items) ? remove : null} />}
+              {panel === "place" && brushRadius !== null && <p class="hint">{kPainting}. {kPaintingByHand}</p>}
+              {panel === "place" && brushRadius === null && <Inspector scene={scene} item={item} viewer={desk!.viewer} onRemove={canRemove(item, items) ? remove : null} />}
               {panel === "filling" && <Filling connection={connection} scene={scene} chosen={organOf(item)} />}
               {panel === "scene" && <>{imported && <ImportResult imported={imported} />}<About scene={scene} /></>}
             </div>
@@ -316,6 +324,7 @@ function Toolbar({ scene, onSave, onLoad, onKeep, onTry, onCopied, error }: {
           </div>
         </div>
       )}
+      {doc.onDisk === "same" && doc.isOfEarlierVisit && <p class="earlier-visit warning" role="status">These are unsaved changes of an earlier visit: Undo goes back to the file, Save writes them into it.</p>}
     </>
   );
 }
@@ -348,11 +357,13 @@ function About({ scene }: { scene: AuthorScene }) {
     <>
       {shown && (
         <Section title={shown.view.name}>
-          <Readings rows={[
-            ...shown.view.organs.map((organ): [string, string] => [organ.name, `${organ.spheres} spheres in ${organ.layers} layers`]),
-            ["elements", String(shown.elements)],
-            ["tools", shown.view.tools.map((tool) => tool.name).join(", ") || "none"],
-          ]} />
+          <div class="numbers" aria-busy={scene.isRefilling}>
+            <Readings rows={[
+              ...shown.view.organs.map((organ): [string, string] => [organ.name, `${organ.spheres} spheres in ${organ.layers} layers`]),
+              ["elements", String(shown.elements)],
+              ["tools", shown.view.tools.map((tool) => tool.name).join(", ") || "none"],
+            ]} />
+          </div>
           <ShownCommand text={command("check", doc!.path)} />
         </Section>
       )}

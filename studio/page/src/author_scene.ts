@@ -195,7 +195,11 @@ export class AuthorScene {
 
   /** Whether what is said and shown may still be of a text before. */
   get isBehind(): boolean {
-    return this.isUnchecked || this.isUnshown || this.isLoading;
+    return this.isUnchecked || this.isRefilling;
+  }
+  /** The same of what is shown alone. */
+  get isRefilling(): boolean {
+    return this.isUnshown || this.isLoading;
   }
 
   /** What is done while the organs are filled, with its number once that is known. */

@@ -23,6 +23,7 @@ export class SceneDocument {
   private gestures = 0; // begun so far
   private last: { what: string; text: string; at: number } | null = null; // the change that preview() made last
   onDisk: OnDisk = "same";
+  private drafted: string | null = null; // the draft that it began with, one step after the file
   private valid: Json | undefined;
   private parsed: { text: string; value: Json | undefined } | null = null;
 
@@ -37,7 +38,7 @@ export class SceneDocument {
     });
     const extensions = editorOf("The text of the scene", schema, [listen]);
     this.view = new EditorView({ state: EditorState.create({ doc: saved, extensions }), root, parent: root });
-    if (text !== saved) this.setText(text, ++this.gestures); // a draft can be undone
+    if (text !== saved) this.drafted = text, this.setText(text, ++this.gestures); // a draft can be undone
   }
 
   /** Reads a scene and the draft of it that this browser kept. A draft of another text than the file has by now stays one
@@ -78,6 +79,10 @@ export class SceneDocument {
 
   get isChanged(): boolean {
     return this.text !== this.saved;
+  }
+  /** Whether the text is the draft that it began with, so that one undo leads back to the file. */
+  get isOfEarlierVisit(): boolean {
+    return this.isChanged && this.text === this.drafted;
   }
   get canUndo(): boolean {
     return undoDepth(this.view.state) > 0;
@@ -139,7 +144,7 @@ export class SceneDocument {
   /** Goes back to what the file says now; undo brings the changes back. */
   async reread(): Promise<void> {
     const file = await this.connection.call<{ text: string; revision: string }>("scene.read", { path: this.path });
-    this.saved = file.text, this.revision = file.revision, this.before = this.last = null, this.onDisk = "same";
+    this.saved = file.text, this.revision = file.revision, this.before = this.last = this.drafted = null, this.onDisk = "same";
     this.setText(file.text, ++this.gestures);
     this.keepDraft();
     this.onChange();
@@ -148,7 +153,7 @@ export class SceneDocument {
   /** Stays with this text though the file is another one by now: the next save writes over that. */
   async keep(): Promise<void> {
     const file = await this.readFile();
-    this.saved = file?.text ?? "", this.revision = file?.revision ?? kNoFile, this.onDisk = "same";
+    this.saved = file?.text ?? "", this.revision = file?.revision ?? kNoFile, this.drafted = null, this.onDisk = "same";
     this.keepDraft();
     this.onChange();
   }

@@ -4,6 +4,7 @@ import type { Connection } from "./connection";
 import { listOf } from "./items";
 import { findJson, parseJson } from "./json_edit";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
+import { kAnchored } from "./stage_scene";
 import { command, millimetres, ofStep } from "./text";
 
 const kMostSpheres = 60000; // that the slider offers, as estimated
@@ -61,13 +62,16 @@ function OrganFilling({ scene, organ, name }: { scene: AuthorScene; organ: numbe
         <span>radius <output>{radius} mm</output>, gap {gap} mm</span>
         <input type="range" min={0} max={steps} step={1} value={toStep(radius)} aria-valuetext={`${radius} mm`} onInput={(e) => set(e.currentTarget.valueAsNumber)} onChange={() => doc.commit()} />
       </label>
-      {shown && <Readings rows={[["spheres", String(shown.spheres)], ["never move", String(shown.anchored)]]} />}
-      {shown?.shape_error && <p class="hint">Shape error, <span class="shape" role="status">{shown.shape_error}</span>. Tools touch the mesh's own surface, which the spheres carry.</p>}
-      <ul class="layers" aria-label="Spheres by layer">
-        {[...layers].sort(([a], [b]) => a - b).map(([layer, count]) => (
-          <li key={layer}><i style={{ background: cssOf(view?.organs[organ]?.layer_colours[layer - 1]) }} />layer {layer}<span class="number">{count}</span></li>
-        ))}
-      </ul>
+      <div class="numbers" aria-busy={scene.isRefilling}>
+        {shown && <Readings rows={[["spheres", String(shown.spheres)], ["never move", String(shown.anchored)]]} />}
+        {shown?.shape_error && <p class="hint">Shape error, <span class="shape" role="status">{shown.shape_error}</span>. Tools touch the mesh's own surface, which the spheres carry.</p>}
+        <ul class="layers" aria-label="Spheres by layer">
+          {[...layers].sort(([a], [b]) => a - b).map(([layer, count]) => (
+            <li key={layer}><i style={{ background: cssOf(view?.organs[organ]?.layer_colours[layer - 1]) }} />layer {layer}<span class="number">{count}</span></li>
+          ))}
+          {shown && shown.anchored > 0 && <li key="anchored"><i style={{ background: kAnchored }} />never moves</li>}
+        </ul>
+      </div>
       {typeof fitted === "number" && fitted !== radius && (
         <>
           <p class="warning">The stiffness was fitted with spheres of {fitted} mm.</p>
@@ -87,11 +91,13 @@ function Cost({ scene }: { scene: AuthorScene }) {
   const share = time ? time.measured_tick_time_s / time.tick_s : 0;
   return (
     <Section title="What it costs">
-      <Readings rows={[
-        ["elements", isLoading ? scene.fillingText : String(shown?.elements ?? "–")],
-        ["a step takes", time ? ofStep(time.measured_tick_time_s, time.tick_s) : isLoading ? scene.fillingText : scene.measuringText],
-      ]} />
-      {time && <p class={share > 0.7 ? "warning" : "hint"} role="status">{share > 1 ? "Slower than real time on this machine." : share > 0.7 ? "Little is left for contact and cuts." : `Measured here and now at rest, median of ${time.ticks} steps.`}</p>}
+      <div class="numbers" aria-busy={scene.isRefilling}>
+        <Readings rows={[
+          ["elements", isLoading ? scene.fillingText : String(shown?.elements ?? "–")],
+          ["a step takes", time ? ofStep(time.measured_tick_time_s, time.tick_s) : isLoading ? scene.fillingText : scene.measuringText],
+        ]} />
+        {time && <p class={share > 0.7 ? "warning" : "hint"} role="status">{share > 1 ? "Slower than real time on this machine." : share > 0.7 ? "Little is left for contact and cuts." : `Measured here and now at rest, median of ${time.ticks} steps.`}</p>}
+      </div>
     </Section>
   );
 }

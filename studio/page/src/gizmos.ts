@@ -14,7 +14,7 @@ export type GizmoMode = "move" | "turn" | "size";
 
 const kEdge = 12; // where a handle stays whose item is outside the picture [px]
 const kStill = 3; // a press that moves less is a click [px]
-const kNudge = 0.001, kFineNudge = 0.0001; // of an arrow key [m]
+export const kNudge = 0.001, kFineNudge = 0.0001; // of an arrow key [m]
 const kRoomBelow = 40; // of the picture, for a name below its handle [px]
 const kClearance = 0.002; // between a tool and the surface that it was dragged to [m]
 
@@ -43,6 +43,8 @@ export class Gizmos {
   private readonly handles = new Map<string, HTMLButtonElement>();
   private grabbed = ""; // handle that is dragged
   private begun: Item | null = null; // what is dragged, as it was before
+  private pressed: { x: number; y: number } | null = null; // a press on the picture that may become a click
+  private readonly disposed = new AbortController();
 
   constructor(private readonly viewer: Viewer, private readonly overlay: HTMLElement) {
     this.controls = new TransformControls(viewer.camera, viewer.canvas);
@@ -54,14 +56,16 @@ export class Gizmos {
     });
     this.controls.addEventListener("objectChange", () => this.dragged());
     viewer.onDraw = () => this.layHandles();
+    this.listenToPicture();
   }
 
   get isDragging(): boolean {
     return this.controls.dragging || this.grabbed !== "";
   }
 
-  /** Shows these items in a scene. */
-  set(stage: StageScene | null, items: Item[], selected: string, mode: GizmoMode): void {
+  /** Shows these items in a scene. While the brush paints, presses are its own and nothing is selected. */
+  set(stage: StageScene | null, items: Item[], selected: string, mode: GizmoMode, isPainting: boolean): void {
+    this.overlay.classList.toggle("painting", isPainting);
     if (stage !== this.stage) {
       this.stage?.scene.remove(this.group, this.pivot, this.controls.getHelper());
       stage?.scene.add(this.pivot, this.controls.getHelper());
@@ -179,6 +183,24 @@ export class Gizmos {
     named.forEach(([name], i) => (name.style.transform = downs[i] ? `translateY(${downs[i].toFixed(1)}px)` : ""));
   }
 
+  /** A click on an organ's surface selects the organ; arrow keys move what is selected. */
+  private listenToPicture(): void {
+    const { canvas } = this.viewer, { signal } = this.disposed;
+    canvas.addEventListener("pointerdown", ({ button, clientX: x, clientY: y }) => {
+      const isFree = button === 0 && !this.controls.dragging && !this.overlay.classList.contains("painting");
+      this.pressed = isFree ? { x, y } : null;
+    }, { signal });
+    canvas.addEventListener("pointermove", ({ clientX, clientY }) => {
+      if (this.pressed && Math.hypot(clientX - this.pressed.x, clientY - this.pressed.y) > kStill) this.pressed = null;
+    }, { signal });
+    canvas.addEventListener("click", () => {
+      const hit = this.pressed && this.stage?.meet(this.viewer.rayAt(this.pressed.x, this.pressed.y));
+      const organ = hit && this.items.find(({ kind, index }) => kind === "organ" && index === hit.organ);
+      if (organ) this.onSelect(organ.key);
+    }, { signal });
+    canvas.addEventListener("keydown", (event) => this.selected && this.nudge(this.selected, event), { signal });
+  }
+
   private listen(handle: HTMLButtonElement, key: string): void {
     let from: { x: number; y: number } | null = null;
     handle.addEventListener("pointerdown", (event) => {
@@ -231,6 +253,7 @@ export class Gizmos {
   }
 
   dispose(): void {
+    this.disposed.abort();
     this.viewer.onDraw = () => {};
     this.controls.detach();
     this.controls.dispose();

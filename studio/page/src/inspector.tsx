@@ -1,17 +1,19 @@
 import * as three from "three";
 import type { AuthorScene } from "./author_scene";
 import { NumberField, VectorField } from "./fields";
-import type { Values } from "./gizmos";
+import { kFineNudge, kNudge, type Values } from "./gizmos";
 import { type Item, mm, mmVector } from "./items";
 import { findJson, type Json } from "./json_edit";
 import { Section } from "./parts";
 import type { Viewer } from "./viewer";
 
+const kTurning = "In the picture a drag turns the view, and the wheel zooms.";
+
 /** What the selected thing is, in numbers. */
 export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScene; item: Item | null; viewer: Viewer; onRemove: ((item: Item) => void) | null }) {
   const { doc } = scene;
   if (!doc || !item) {
-    return <p class="hint">Choose something in the list or in the picture. It can be dragged over the surface, moved by its arrows, or given numbers here.</p>;
+    return <p class="hint">Choose something in the list or in the picture. It can be dragged over the surface, moved by its arrows, or given numbers here. {kTurning}</p>;
   }
   const preview = (values: Values) => scene.preview(values), done = () => doc.commit();
   const at = (...more: (string | number)[]) => [...item.path, ...more];
@@ -33,6 +35,7 @@ export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScen
     <Section title={`${item.kind}: ${item.name}`} aside={onRemove && (
       <button type="button" class="quiet remove" onClick={() => onRemove(item)}>remove</button>
     )}>
+      <p class="hint">{kTurning}{item.place && ` Arrow keys move it by ${mm(kNudge)} mm, with Shift by ${mm(kFineNudge)} mm.`}</p>
       {item.kind !== "anchor" && (
         <label class="field"><span>name</span>
           <input value={item.name} onInput={(e) => e.currentTarget.value && preview([[at("name"), e.currentTarget.value]])} onChange={done} />
@@ -77,7 +80,7 @@ export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScen
 
 function Anchored({ scene, organ }: { scene: AuthorScene; organ: number }) {
   const shown = scene.shown?.organs[organ];
-  return shown ? <p class="hint" role="status">{shown.anchored} of {shown.spheres} spheres of this organ never move.</p> : null;
+  return shown ? <p class="hint numbers" role="status" aria-busy={scene.isRefilling}>{shown.anchored} of {shown.spheres} spheres of this organ never move.</p> : null;
 }
 
 /** The camera of the picture as a camera of the scene. */

@@ -54,11 +54,12 @@ export function SceneList({ connection, listing, scene, onOpen, onChanged }: {
       <h2>Scenes</h2>
       {listing.scenes.length === 0 && <p class="hint">No scene in this folder yet.</p>}
       <ul class="scenes">
-        {listing.scenes.map((entry) => (
+        {listing.scenes.map((entry, i) => (
           <li key={entry.path}>
-            <button type="button" aria-current={path === entry.path} title={entry.path} onClick={() => onOpen(entry.path)}><span>{sceneName(entry.path)}</span></button>
+            <button type="button" aria-current={path === entry.path} aria-describedby={hasDraft(entry.path) ? `draft-${i}` : undefined} title={entry.path} onClick={() => onOpen(entry.path)}><span>{sceneName(entry.path)}</span></button>
             <button type="button" class="quiet more" aria-expanded={chosen === entry.path} aria-label={`Rename or remove ${sceneName(entry.path)}`} title="Rename or remove"
               onClick={() => setChosen(chosen === entry.path ? "" : entry.path)}>…</button>
+            {hasDraft(entry.path) && <small id={`draft-${i}`} class="draft">unsaved changes</small>}
           </li>
         ))}
       </ul>

@@ -8,7 +8,7 @@ const kLongestArrow = 0.06; // [m]
 const kSteel: Vector = [0.5, 0.53, 0.57];
 const kHandle: Vector = [0.05, 0.055, 0.065];
 const kCloth: Vector = [0.16, 0.22, 0.24]; // of obstacles
-const kAnchored = 0x7fb8ff;
+export const kAnchored = "#7fb8ff"; // of spheres that never move
 const kBead = 0.5; // of a sphere's radius, where the surface is to be seen around it
 
 export type Shown = "surface" | "both" | "spheres";

@@ -230,6 +230,7 @@ step("saving is by key, and never over somebody else's change", async () => {
   assert.equal(onDisk(), changed + "\n\n");
   await button("Keep mine").click();
   await page.waitForSelector(".conflict", { state: "detached" });
+  assert.equal(await page.locator(".earlier-visit").count(), 0, "undo does not lead to the file that is there now");
   assert.equal(onDisk(), changed + "\n\n");
   assert.equal(await text(), mine);
   await save();
@@ -251,7 +252,9 @@ step("the slider fills again: spheres, time per tick, scatter", async () => {
   const before = await reading(page, "spheres");
   await slider.focus();
   for (let i = 0; i < 12; ++i) await page.keyboard.press("ArrowLeft");
+  await page.waitForSelector("#panel .numbers[aria-busy=true]:has-text('a step takes')"); // numbers of the filling before
   await settled();
+  assert.equal(await page.locator("#panel .numbers[aria-busy=true]").count(), 0);
   await button("spheres").click();
   await page.waitForFunction(() => / ms it has$/.test([...document.querySelectorAll("#panel .readings div")].find((d) => d.textContent.startsWith("a step takes"))?.lastChild.textContent ?? ""));
   const spheres = await reading(page, "spheres"), time = await reading(page, "a step takes");

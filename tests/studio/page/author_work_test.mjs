@@ -92,12 +92,14 @@ step("spheres are drawn in the colours of their layers, and those that never mov
   await button("spheres").click();
   await page.waitForTimeout(300);
   const dots = await page.locator("#panel .layers i").evaluateAll((list) => list.map((dot) => getComputedStyle(dot).backgroundColor.match(/\d+/g).map(Number)));
-  assert.equal(dots.length, 2);
-  const kBlue = [127, 184, 255], [outer, inner, anchored] = await hues([...dots, kBlue]);
+  const kBlue = [127, 184, 255];
+  assert.deepEqual([dots.length, dots[2]], [3, kBlue]);
+  assert.equal(await page.locator("#panel .layers li").last().innerText(), "never moves");
+  const [outer, inner, anchored] = await hues(dots);
   await picture(page, "author-layers");
   await button("surface").click();
   await page.waitForTimeout(300);
-  const [, none, neither] = await hues([...dots, kBlue]); // of handles and rings
+  const [, none, neither] = await hues(dots); // of handles and rings
   assert.ok(outer > 3000 && inner - none > 100 && anchored - neither > 300, `pixels of layer 1, layer 2 and anchored: ${outer}, ${inner} - ${none}, ${anchored} - ${neither}`);
   assert.ok(outer > 3 * (inner - none), "the inner layer is behind the outer one");
 });
@@ -377,11 +379,21 @@ step("a draft is there after its tab was closed", async () => {
   await page.close();
   page = other;
   await page.goto(studio.address);
+  await page.click("header nav button:has-text('Author')");
+  const marked = page.locator(".scenes li button[aria-describedby]");
+  assert.equal(await marked.locator("span").innerText(), "kidney");
+  assert.equal(await page.locator(`#${await marked.getAttribute("aria-describedby")}`).innerText(), "unsaved changes");
   await openScene();
   assert.equal(await text(), changed);
   assert.match(await page.locator(".verdict").textContent(), /not saved$/);
+  const told = page.locator(".earlier-visit[role=status]:has-text('unsaved changes of an earlier visit: Undo goes back to the file')");
+  await told.waitFor();
+  assert.deepEqual(await seriousFindings(page), []);
+  await picture(page, "author-earlier-visit");
   await page.keyboard.press("Control+z");
   assert.equal(await text(), saved);
+  await told.waitFor({ state: "detached" });
+  assert.equal(await marked.count(), 0);
   await page.keyboard.press("Control+Shift+z");
   assert.equal(onDisk(), saved);
 });

@@ -144,6 +144,35 @@ step("a box anchor gets another size by its cubes", async () => {
   assert.equal((await save()).organs[0].anchors.some((anchor) => anchor.box), false);
 });
 
+step("a click on an organ's surface chooses the organ; a drag from there turns the view and chooses nothing", async () => {
+  const view = await page.locator(".view canvas").boundingBox(), chosen = () => page.locator("#panel h2").first().innerText();
+  const at = (x, y) => ({ x: view.x + x * view.width, y: view.y + y * view.height }), middle = at(0.5, 0.5), nothing = at(0.97, 0.95);
+  const surface = { x: middle.x + 140, y: middle.y - 15 }; // beside the arrows around the probe
+  await page.click(".objects button:has-text('probe')");
+  await page.waitForSelector("#panel h2:has-text('probe: probe')");
+  await page.mouse.click(nothing.x, nothing.y);
+  await page.mouse.move(surface.x, surface.y);
+  await page.mouse.down();
+  for (const x of [20, 40, 20, 0]) await page.mouse.move(surface.x + x, surface.y);
+  await page.mouse.up();
+  await settled();
+  assert.match(await chosen(), /probe: probe/i);
+  // Arrow keys in the picture move what is chosen, as is said beside it.
+  const hint = await page.locator("#panel .hint").first().innerText();
+  assert.match(hint, /drag turns the view, and the wheel zooms\. Arrow keys move it by 1 mm, with Shift by 0\.1 mm\./);
+  const place = async () => (await scene()).probes[0].at_mm, before = await text(), was = await place();
+  for (const [key, way] of [["ArrowUp", 1], ["Shift+ArrowUp", 1.1]]) {
+    await page.keyboard.press(key);
+    const moved = Math.hypot(...(await place()).map((x, i) => x - was[i]));
+    assert.ok(Math.abs(moved - way) < 0.02, `${key}: ${moved} mm`);
+  }
+  while ((await text()) !== before) await page.keyboard.press("Control+z");
+  await page.mouse.click(surface.x, surface.y);
+  await page.waitForSelector("#panel h2:has-text('organ: kidney')");
+  await picture(page, "author-clicked-organ");
+  assert.equal(await text(), before);
+});
+
 step("anchors are painted by the brush; a stroke is one step", async () => {
   const before = await text(), anchors = (await scene()).organs[0].anchors.length;
   await page.click(".objects button:has-text('paint')");
@@ -154,6 +183,23 @@ step("anchors are painted by the brush; a stroke is one step", async () => {
   for (const anchor of painted.slice(anchors)) assert.ok(fromMesh(anchor.sphere.centre_mm) < 4);
   await settled();
   await picture(page, "author-brush");
+  // A press on a ball's handle is the brush's too: it erases the ball, and nothing is chosen or unfolds in the list.
+  const ball = await centreOf(handle(`ball ${painted.length - 1}`));
+  await page.keyboard.down("Shift");
+  await drag(ball, { x: 0, y: 0 }, 1);
+  await page.keyboard.up("Shift");
+  const erased = (await scene()).organs[0].anchors;
+  assert.ok(erased.length < painted.length && erased.length > anchors, `${erased.length} of ${painted.length}`);
+  assert.equal(await page.locator(".handle[aria-pressed=true], .objects li button[aria-current=true], .objects .stroke details[open]").count(), 0);
+  await page.keyboard.press("Control+z");
+  const beside = await centreOf(handle(`ball ${painted.length}`));
+  await drag(beside, { x: 0, y: -40 }, 8);
+  const more = (await scene()).organs[0].anchors;
+  assert.ok(more.length > painted.length, "it paints from there");
+  assert.deepEqual(more.slice(0, painted.length), painted, "and moves no ball");
+  await page.keyboard.press("Control+z");
+  assert.deepEqual((await scene()).organs[0].anchors, painted);
+  await settled();
   await page.keyboard.press("Escape");
   // One row of the list, which opens: each of its balls can be chosen, and all of them removed.
   const row = page.locator(".objects .stroke"), balls = painted.length - anchors;
