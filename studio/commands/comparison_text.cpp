@@ -17,8 +17,7 @@ std::string number(std::optional<double> value) { return value ? output::short_n
 
 std::string describe(const compare::Moment& moment) {
   char text[200];
-  const std::string limit =
-      moment.kind == compare::MomentKind::stray_cut ? "" : ", limit " + output::short_number(moment.limit);
+  const std::string limit = moment.limit > 0 ? ", limit " + output::short_number(moment.limit) : "";
   std::snprintf(text, sizeof text, "%7.2f s  %s: %s %s%s, from %.2f s to %.2f s", moment.worst_s,
                 compare::to_word(moment.kind), output::short_number(moment.value).c_str(), moment.unit, limit.c_str(),
                 moment.from_s, moment.to_s);

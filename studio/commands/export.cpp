@@ -278,7 +278,7 @@ Command add_export(CLI::App& program) {
   app->add_option(
       "--align", arguments->align,
       "What brings both together: path of the tool, first contact, first cut, clock, or the seconds that the "
-      "second is ahead; the half that is ahead is slowed down. If not given the path, else the contact");
+      "second one's clock shows more; the half that is ahead is slowed down. If not given the path, else the contact");
   app->add_option("--size", arguments->size, "Width x height in pixels")->capture_default_str();
   app->add_option("--fps", options.fps, "Frames per second")->capture_default_str();
   app->add_option("--speed", options.speed, "Times real speed")->capture_default_str();

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "studio/compare/measure_table.h"
+#include "studio/compare/moments.h"
 #include "studio/compare/reach.h"
 #include "studio/compare/way.h"
 #include "studio/output/number_text.h"
@@ -12,9 +13,10 @@
 namespace ctpm::compare {
 namespace {
 
-constexpr double kTurnedSeverity = 100;
+constexpr double kOfAll = 100;  // severity of what is wrong with the whole stroke: more than that of any part of it
 
 struct Sentence {
+  Concern concern;
   double severity;
   std::string text;
 };
@@ -22,12 +24,24 @@ struct Sentence {
 std::string number(double value) { return output::short_number(value, 3); }
 std::string at(const Moment& moment) { return " at " + output::fixed(moment.worst_s, 2) + " s"; }
 
+std::string zone_at(const SessionTrack& track, double seconds) {
+  const std::int32_t zone = track.zone[std::size_t(std::llround(seconds / track.tick))];
+  return track.zones[std::size_t(zone)];
+}
+
 /// The worst moment of a kind, in words. `seconds`, `sum` (of values) and `count`: of all moments of
 /// the kind.
-std::string to_sentence(const Moment& moment, double seconds, double sum, std::size_t count) {
+std::string to_sentence(const Moment& moment, double seconds, double sum, std::size_t count,
+                        const SessionTrack& trainee) {
   const std::string value = number(moment.value) + " " + moment.unit, limit = number(moment.limit) + " " + moment.unit;
   const std::string in_all = " for " + number(seconds) + " s in all";
   switch (moment.kind) {
+    case MomentKind::zone:
+      return "Keep out of forbidden zones: " + value + " in " + zone_at(trainee, moment.worst_s) + at(moment) +
+             (count > 1 ? ", and in such zones" + in_all + "." : ".");
+    case MomentKind::stray_cut:
+      return "Cut only where the expert cut: " + number(sum) + " severed elements are ones that the expert left whole" +
+             ", " + (count > 1 ? number(moment.value) : "all") + " of them in the cut" + at(moment) + ".";
     case MomentKind::force:
       return "Press more gently: " + value + at(moment) + ", above the limit of " + limit + in_all + ".";
     case MomentKind::depth:
@@ -39,16 +53,13 @@ std::string to_sentence(const Moment& moment, double seconds, double sum, std::s
     case MomentKind::pause:
       return "Go on without stopping: " + value + " of standing still" + at(moment) + ", at most " + limit +
              " are usual" + (count > 1 ? "; " + std::to_string(count) + " such pauses." : ".");
-    case MomentKind::stray_cut:
-      return "Cut only where the expert cut: " + number(sum) + " severed elements are ones that the expert left whole" +
-             ", " + (count > 1 ? number(moment.value) : "all") + " of them in the cut" + at(moment) + ".";
   }
   return "";
 }
 
-void add_moments(std::vector<Sentence>& sentences, const std::vector<Moment>& moments) {
-  for (const MomentKind kind :
-       {MomentKind::force, MomentKind::depth, MomentKind::deviation, MomentKind::pause, MomentKind::stray_cut}) {
+void add_moments(std::vector<Sentence>& sentences, const std::vector<Moment>& moments, const SessionTrack& trainee) {
+  using enum MomentKind;
+  for (const MomentKind kind : {zone, stray_cut, force, depth, deviation, pause}) {
     const Moment* worst = nullptr;
     double seconds = 0, sum = 0;
     std::size_t count = 0;
@@ -57,7 +68,8 @@ void add_moments(std::vector<Sentence>& sentences, const std::vector<Moment>& mo
         if (!worst) worst = &moment;  // they are sorted
         seconds += moment.to_s - moment.from_s, sum += moment.value, ++count;
       }
-    if (worst) sentences.push_back({worst->severity, to_sentence(*worst, seconds, sum, count)});
+    if (worst)
+      sentences.push_back({concern_of(*worst), worst->severity, to_sentence(*worst, seconds, sum, count, trainee)});
   }
 }
 
@@ -68,27 +80,29 @@ void add_cut(std::vector<Sentence>& sentences, const SessionTrack& expert, const
   for (std::size_t i = 0; i < expert.severed_at.size(); ++i)
     if (expert.severed_at[i] >= 0) ++severed, whole += trainee.severed_at[i] < 0;
   if (trainee.cuts.empty()) {
-    sentences.push_back({kTurnedSeverity, "Cut: the expert severed " + number(severed) + " elements, this hand none."});
+    sentences.push_back(
+        {Concern::accuracy, kOfAll, "Cut: the expert severed " + number(severed) + " elements, this hand none."});
     return;
   }
   if (severed > 0 && whole > kNotableShare * severed)
-    sentences.push_back({whole / severed, "Complete the cut: " + number(whole) + " of the " + number(severed) +
-                                              " elements that the expert severed were left whole."});
+    sentences.push_back({Concern::accuracy, whole / severed,
+                         "Complete the cut: " + number(whole) + " of the " + number(severed) +
+                             " elements that the expert severed were left whole."});
   if (!expert.cut || !trainee.cut) return;
   // Not from the nearest surface: in a cut through most of an organ that is the far side.
   const double own = trainee.cut->along_blade, wanted = expert.cut->along_blade;
   if (const double more = own - wanted; std::abs(more) > kNotableShare * wanted)
-    sentences.push_back({std::abs(more) / wanted, std::string("Cut ") + (more < 0 ? "deeper: " : "less deep: ") +
-                                                      number(1e3 * own) + " mm, the expert " + number(1e3 * wanted) +
-                                                      " mm."});
+    sentences.push_back({more < 0 ? Concern::accuracy : Concern::harm, std::abs(more) / wanted,
+                         std::string("Cut ") + (more < 0 ? "deeper: " : "less deep: ") + number(1e3 * own) +
+                             " mm, the expert " + number(1e3 * wanted) + " mm."});
 }
 
 /// How much less deep than the expert a tool without a blade pushes.
 void add_push(std::vector<Sentence>& sentences, const Comparison& comparison) {
   for (const auto& [measure, expert, trainee] : shortfalls_of(comparison.values, comparison.damage_depth))
     if (measure == &kDepth)
-      sentences.push_back(
-          {1 - trainee / expert, "Push deeper: " + number(trainee) + " mm, the expert " + number(expert) + " mm."});
+      sentences.push_back({Concern::accuracy, 1 - trainee / expert,
+                           "Push deeper: " + number(trainee) + " mm, the expert " + number(expert) + " mm."});
 }
 
 /// The worse measure whose value is farthest from the expert's, as a share.
@@ -113,11 +127,12 @@ std::vector<std::string> advice_of(const ComparedSessions& compared) {
   const Comparison& comparison = compared.comparison;
   std::vector<Sentence> sentences;
   if (comparison.way != Way::same)
-    sentences.push_back({kTurnedSeverity, std::string("Turn the stroke: ") + to_word(comparison.way) + "."});
-  add_moments(sentences, comparison.moments);
+    sentences.push_back({Concern::harm, kOfAll, std::string("Turn the stroke: ") + to_word(comparison.way) + "."});
+  add_moments(sentences, comparison.moments, compared.trainee);
   add_push(sentences, comparison);
   add_cut(sentences, compared.expert, compared.trainee);
   std::ranges::stable_sort(sentences, std::greater<>(), &Sentence::severity);
+  std::ranges::stable_sort(sentences, {}, &Sentence::concern);
   std::vector<std::string> advice;
   for (const Sentence& sentence : sentences) advice.push_back(sentence.text);
   if (!advice.empty()) return advice;

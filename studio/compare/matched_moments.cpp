@@ -41,8 +41,8 @@ Result<MatchedMoments> at_event(recordings::SessionReader& a, recordings::Sessio
   return moments;
 }
 
-/// In step, the second session `ahead_s` ahead of the first, for as long as both last. Error: they are never seen
-/// together.
+/// In step, the second session's clock `ahead_s` ahead of the first's, for as long as both last. Error: they are never
+/// seen together.
 Result<MatchedMoments> shifted(const recordings::SessionReader& a, const recordings::SessionReader& b, double ahead_s) {
   const auto length = [](const recordings::SessionReader& session) {
     return double(session.tick_count()) * session.start().model.tick;
@@ -150,8 +150,10 @@ Result<MatchedMoments> match_sessions(recordings::SessionReader& a, recordings::
   if (by == "cut") return at_event(a, b, EventKind::cut, "cut");
   if (const std::optional<double> ahead_s = number_in(by)) return shifted(a, b, *ahead_s);
   if (!by.empty())
-    return Error{output::option_name("export.align"),
-                 "got '" + by + "', must be path, contact, cut, clock or the seconds that the second is ahead", ""};
+    return Error{
+        output::option_name("export.align"),
+        "got '" + by + "', must be path, contact, cut, clock or the seconds that the second one's clock shows more",
+        ""};
   if (Result<MatchedMoments> found = on_the_way(a, b)) return found;
   if (Result<MatchedMoments> found = at_event(a, b, EventKind::contact_begins, "contact")) return found;
   return MatchedMoments{};

@@ -34,9 +34,9 @@ MatchedMoments along_path(const Alignment& alignment, const std::vector<double>&
                           const std::vector<double>& time_b, double least_s);
 
 /// What two sessions are brought together by: `path` of the tool, first `contact`, first `cut`, `clock`, which needs no
-/// moments, or by hand: a number, the seconds by which the second session is ahead. Empty: the first of path, contact
-/// and clock that both have. Errors: another word; seconds by which they have no moment in common; a session that has
-/// no such event, or no tool's way in the scene of the other; a damaged session.
+/// moments, or by hand: a number, the seconds that the clock of the second session shows more. Empty: the first of
+/// path, contact and clock that both have. Errors: another word; seconds by which they have no moment in common; a
+/// session that has no such event, or no tool's way in the scene of the other; a damaged session.
 Result<MatchedMoments> match_sessions(recordings::SessionReader& a, recordings::SessionReader& b,
                                       const std::string& by);
 

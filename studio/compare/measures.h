@@ -41,7 +41,7 @@ struct MeasuredValue {
   bool less_done = false;  ///< the trainee reached less than the expert, with which the measure grows
 };
 
-enum class MomentKind { force, depth, deviation, pause, stray_cut };
+enum class MomentKind { zone, stray_cut, force, depth, deviation, pause };
 
 /// "force above the limit", "deeper than the damage limit" ...
 const char* to_word(MomentKind kind);
@@ -50,10 +50,11 @@ const char* to_word(MomentKind kind);
 struct Moment {
   MomentKind kind = MomentKind::force;
   double from_s = 0, to_s = 0, worst_s = 0;
-  double value = 0, limit = 0;  ///< the worst value, and its limit, in `unit`
+  double value = 0, limit = 0;  ///< the worst value, and its limit, in `unit`; 0: it has none
   const char* unit = "";
   /// (value / limit - 1) T / (T + 0.1 s) for what lasts for T, so that a tick beyond a limit is next to nothing; of a
-  /// stray cut its elements over those that the expert severed. Harm to the tissue counts 5 times.
+  /// stray cut its elements over those that the expert severed; of a forbidden zone the seconds in it. It tells
+  /// moments of one Concern apart.
   double severity = 0;
 };
 
@@ -79,7 +80,7 @@ struct Comparison {
   double damage_depth = 0;            ///< smallest limit of the scene's organs [m]; 0: no limit
   double path_limit = 0;              ///< half of the smallest sphere spacing: beyond it other spheres are nearer [m]
   std::vector<MeasuredValue> values;  ///< in the order of a report
-  std::vector<Moment> moments;        ///< worst first
+  std::vector<Moment> moments;        ///< in the order of worst_moments()
   Alignment alignment;                ///< of the paths below; a: the expert's
   Way way = Way::same;
   std::vector<Vec3> expert_path, trainee_path;    ///< of the tool, as aligned [m]

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <ranges>
+#include <utility>
 
 namespace ctpm::compare {
 namespace {
@@ -13,14 +16,12 @@ constexpr double kIdleLeast = 0.3;   // [s]
 constexpr double kSameMoment = 0.3;  // shorter gaps do not end a moment [s]
 constexpr double kPauseAllowed = 1;  // [s]
 constexpr double kMillimetres = 1e3;
-constexpr double kHarm = 5;       // what harms the tissue weighs as much as this many times of what costs time or way
-constexpr double kNotable = 0.1;  // what lasts for this time has half the severity of what lasts [s]
+constexpr double kNotable = 0.1;    // what lasts for this time has half the severity of what lasts [s]
+constexpr double kTrifle = 0.05;    // severity below which a limit is as good as kept
+constexpr std::size_t kInTurn = 3;  // moments of a kind before others have their turn
 
 /// How bad it is to be `beyond` a limit, in limits, for `seconds`: a tick of it is next to nothing.
-double severity_of(MomentKind kind, double beyond, double seconds) {
-  const bool does_harm = kind == MomentKind::force || kind == MomentKind::depth || kind == MomentKind::stray_cut;
-  return (does_harm ? kHarm : 1) * beyond * seconds / (seconds + kNotable);
-}
+double severity_of(double beyond, double seconds) { return beyond * seconds / (seconds + kNotable); }
 
 /// One moment for each run of values above `limit`; `time[i]` is when `value[i]` was.
 std::vector<Moment> moments_above(MomentKind kind, const std::vector<double>& value, const std::vector<double>& time,
@@ -33,7 +34,7 @@ std::vector<Moment> moments_above(MomentKind kind, const std::vector<double>& va
         std::max_element(value.begin() + std::ptrdiff_t(spell.first), value.begin() + std::ptrdiff_t(spell.last));
     const double from = time[spell.first], to = time[spell.last - 1];
     moments.push_back({kind, from, to, time[std::size_t(worst - value.begin())], scale * *worst, scale * limit, unit,
-                       severity_of(kind, *worst / limit - 1, to - from)});
+                       severity_of(*worst / limit - 1, to - from)});
   }
   return moments;
 }
@@ -42,11 +43,27 @@ void append(std::vector<Moment>& all, const std::vector<Moment>& more) {
   all.insert(all.end(), more.begin(), more.end());
 }
 
-std::vector<Moment> deviations(const Comparison& comparison) {
-  std::vector<double> distance(comparison.trainee_path.size(), 0.0);
-  for (const AlignedPair& pair : comparison.alignment.pairs)
-    distance[pair.b] = std::max(distance[pair.b], pair.distance);
+/// Whether the tool touches or cuts between each of these times and the next.
+std::vector<bool> work_at(const SessionTrack& track, const std::vector<double>& time) {
+  const auto tick_at = [&](std::size_t i) { return std::size_t(std::llround(time[i] / track.tick)); };
+  std::vector<bool> works;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const std::size_t last = i + 1 < time.size() ? tick_at(i + 1) : track.tick_count();
+    works.push_back(false);
+    for (std::size_t tick = tick_at(i); tick < last && !works.back(); ++tick) works.back() = track.works(tick);
+  }
+  return works;
+}
+
+/// Measured without time: who waits before the work is not off the path in it.
+std::vector<Moment> deviations(const Comparison& comparison, const SessionTrack& expert, const SessionTrack& trainee) {
+  const std::vector<bool> by_expert = work_at(expert, comparison.expert_time);
+  const bool is_all_work = std::ranges::find(by_expert, true) == by_expert.end();
   const std::vector<double>& time = comparison.trainee_time;
+  const std::vector<bool> works = work_at(trainee, time);
+  std::vector<double> distance(time.size(), 0.0);
+  for (std::size_t i = 0; i < time.size(); ++i)
+    if (is_all_work || works[i]) distance[i] = distance_from(comparison.trainee_path[i], {&comparison.expert_path, 1});
   const double step = time.size() > 1 ? time[1] - time[0] : kSameMoment;
   return moments_above(MomentKind::deviation, distance, time, comparison.path_limit,
                        std::size_t(std::ceil(kSameMoment / step)), kMillimetres, "mm");
@@ -76,7 +93,7 @@ std::vector<Moment> long_pauses(const SessionTrack& expert, const SessionTrack& 
     const double length = pause.to_s - pause.from_s;
     if (length > allowed)
       moments.push_back({MomentKind::pause, pause.from_s, pause.to_s, pause.from_s, length, allowed, "s",
-                         severity_of(MomentKind::pause, length / allowed - 1, length)});
+                         severity_of(length / allowed - 1, length)});
   }
   return moments;
 }
@@ -97,15 +114,45 @@ std::vector<Moment> stray_cuts(const SessionTrack& expert, const SessionTrack& t
     const double count = double(ticks.size());
     moments.push_back({MomentKind::stray_cut, trainee.seconds(std::size_t(*first)), trainee.seconds(std::size_t(*last)),
                        trainee.seconds(std::size_t(*first)), count, 0, "elements",
-                       kHarm * count / std::max(1.0, double(by_expert))});
+                       count / std::max(1.0, double(by_expert))});
   }
   return moments;
+}
+
+std::vector<Moment> times_in_zones(const SessionTrack& trainee, std::size_t gap) {
+  std::vector<Moment> moments;
+  for (std::size_t zone = 0; zone < trainee.zones.size(); ++zone) {
+    std::vector<bool> is_in;
+    for (const std::int32_t in : trainee.zone) is_in.push_back(in == std::int32_t(zone));
+    for (const Spell& spell : spells_of(is_in, 1, gap)) {
+      const double from = trainee.seconds(spell.first), to = trainee.seconds(spell.last);
+      moments.push_back({MomentKind::zone, from, to, from, to - from, 0, "s", to - from});
+    }
+  }
+  return moments;
+}
+
+void put_in_order(std::vector<Moment>& moments) {
+  std::ranges::stable_sort(moments, std::greater<>(), &Moment::severity);
+  std::ranges::stable_sort(moments, {}, concern_of);
+  std::map<MomentKind, std::size_t> seen;
+  std::vector<std::pair<std::size_t, Moment>> turns;
+  for (const Moment& moment : moments) {
+    const std::size_t turn = seen[moment.kind]++ / kInTurn;
+    turns.emplace_back(concern_of(moment) == Concern::trifle ? moments.size() : turn, moment);
+  }
+  std::ranges::stable_sort(turns, {}, &std::pair<std::size_t, Moment>::first);
+  std::ranges::copy(turns | std::views::values, moments.begin());
 }
 
 }  // namespace
 
 const char* to_word(MomentKind kind) {
   switch (kind) {
+    case MomentKind::zone:
+      return "in a forbidden zone";
+    case MomentKind::stray_cut:
+      return "cut where the expert did not";
     case MomentKind::force:
       return "force above the limit";
     case MomentKind::depth:
@@ -114,10 +161,17 @@ const char* to_word(MomentKind kind) {
       return "away from the expert's path";
     case MomentKind::pause:
       return "long pause";
-    case MomentKind::stray_cut:
-      return "cut where the expert did not";
   }
   return "";
+}
+
+Concern concern_of(const Moment& moment) {
+  // Where a tool should not have been is no trifle, and what is cut stays cut.
+  if (moment.kind == MomentKind::zone) return Concern::forbidden;
+  if (moment.kind == MomentKind::stray_cut) return Concern::harm;
+  if (moment.severity < kTrifle) return Concern::trifle;
+  if (moment.kind == MomentKind::deviation) return Concern::accuracy;
+  return moment.kind == MomentKind::pause ? Concern::economy : Concern::harm;
 }
 
 HandMotion hand_motion(const SessionTrack& track, const Spell& stroke) {
@@ -143,10 +197,11 @@ std::vector<Moment> worst_moments(const Comparison& comparison, const SessionTra
   if (comparison.damage_depth > 0)
     append(moments,
            moments_above(MomentKind::depth, trainee.depth, time, comparison.damage_depth, gap, kMillimetres, "mm"));
-  append(moments, deviations(comparison));
+  append(moments, deviations(comparison, expert, trainee));
   if (expert.is_timed && trainee.is_timed) append(moments, long_pauses(expert, trainee));
   append(moments, stray_cuts(expert, trainee));
-  std::ranges::stable_sort(moments, std::greater<>(), &Moment::severity);
+  append(moments, times_in_zones(trainee, gap));
+  put_in_order(moments);
   return moments;
 }
 

@@ -14,9 +14,22 @@ struct HandMotion {
 };
 HandMotion hand_motion(const SessionTrack& track, const Spell& stroke);
 
-/// The worst moments of the trainee's session, worst first: forces and depths beyond their limits, stray cuts, which
-/// sever elements that the expert left whole, deviations of more than half a sphere spacing from the expert's path, and
-/// pauses longer than 1 s and than the expert's longest, unless a session lacks real time.
+/// Why something should be done better, the gravest reason first.
+enum class Concern {
+  forbidden,  ///< the tool was where the scene forbids it
+  harm,       ///< to the tissue: cut where the expert did not, pressed too hard or too deep
+  accuracy,   ///< off the expert's path, less deep, not complete
+  economy,    ///< time
+  trifle,     ///< less than 5 % beyond a limit, or beyond it for a few ticks
+};
+Concern concern_of(const Moment& moment);
+
+/// The worst moments of the trainee's session: time in forbidden zones; stray cuts, which sever elements that the
+/// expert left whole; forces and depths beyond their limits; touching or cutting more than half a sphere spacing
+/// away from the expert's path, because the way to the work and back harms nothing (where the expert does neither, all
+/// of the way counts); pauses longer than 1 s and than the expert's longest, unless a session lacks real
+/// time. They are in the order of their Concern, then of severity, and after three of a kind all others have their
+/// turn.
 std::vector<Moment> worst_moments(const Comparison& comparison, const SessionTrack& expert,
                                   const SessionTrack& trainee);
 

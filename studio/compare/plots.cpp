@@ -133,7 +133,8 @@ std::vector<reports::Plot> plots_over_time(const ComparedSessions& compared) {
     if (comparison.force_limit)
       plot.series.push_back(
           level(std::string("limit: ") + comparison.force_limit_from, 0, end, *comparison.force_limit));
-    plot.events = events_of(comparison, {MomentKind::force, MomentKind::pause, MomentKind::stray_cut});
+    plot.events =
+        events_of(comparison, {MomentKind::zone, MomentKind::stray_cut, MomentKind::force, MomentKind::pause});
     plots.push_back(plot);
   }
   if (has_any(expert.depth, trainee.depth)) {

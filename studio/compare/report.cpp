@@ -48,14 +48,17 @@ reports::Table moments_table(const Comparison& comparison) {
                    {"severity", "severity", 3}};
   for (const Moment& moment : comparison.moments)
     table.rows.push_back({moment.worst_s, moment.from_s, moment.to_s, std::string(to_word(moment.kind)), moment.value,
-                          moment.kind == MomentKind::stray_cut ? reports::Cell() : reports::Cell(moment.limit),
-                          std::string(moment.unit), moment.severity});
+                          moment.limit > 0 ? reports::Cell(moment.limit) : reports::Cell(), std::string(moment.unit),
+                          moment.severity});
   table.caption =
       "Times are those of the trainee's session. Severity is how far the worst value is beyond its limit, in limits, "
       "and less for what lasts less than some tenths of a second: of force as in the plot, of depth the scene's, of "
       "the path half a sphere spacing, of a pause the expert's longest and at least 1 s; for cuts it is the number of "
-      "elements that the expert left whole over those that the expert severed. What harms the tissue (force, depth, "
-      "cuts) counts five times. The weights are this program's.";
+      "elements that the expert left whole over those that the expert severed, and of a forbidden zone the seconds in "
+      "it. The path counts while the tool touches or cuts, and its value is the distance from the nearest place of the "
+      "expert's. Forbidden zones come first, then what harms the tissue (cuts, force, depth), then the path, then "
+      "pauses, and last what is next to nothing, by severity; after three of a kind others have their turn. The order "
+      "is this program's.";
   return table;
 }
 
@@ -103,10 +106,9 @@ void add_conclusion(reports::Report& report, const ComparedSessions& compared) {
 
 /// A moment in one line.
 std::string caption_of(const Moment& moment, std::size_t number) {
-  const bool has_limit = moment.kind != MomentKind::stray_cut;
   return std::to_string(number) + ". " + to_word(moment.kind) + " at " + output::fixed(moment.worst_s, 2) +
          " s: " + output::short_number(moment.value) + " " + moment.unit +
-         (has_limit ? ", limit " + output::short_number(moment.limit) + " " + moment.unit : "");
+         (moment.limit > 0 ? ", limit " + output::short_number(moment.limit) + " " + moment.unit : "");
 }
 
 Result<Done> add_moments(reports::Report& report, const Comparison& comparison,

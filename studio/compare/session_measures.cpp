@@ -21,9 +21,8 @@ std::vector<std::size_t> stations_of(const SessionTrack& track, const Spell& str
   std::vector<std::size_t> at{stroke.first};
   std::size_t deepest = stroke.first;
   for (std::size_t i = stroke.first; i < stroke.last; ++i) {
-    const bool works = track.force[i] > 0 || track.severed[i] > 0;
-    if (works && at.size() == 1) at.push_back(i);
-    if (works) at.resize(2), at.push_back(i);
+    if (track.works(i) && at.size() == 1) at.push_back(i);
+    if (track.works(i)) at.resize(2), at.push_back(i);
     if (track.depth[i] > track.depth[deepest]) deepest = i;
   }
   at.push_back(deepest), at.push_back(stroke.last - 1);

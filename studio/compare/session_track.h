@@ -61,6 +61,7 @@ struct SessionTrack {
   bool replays = true;       ///< replaying the cuts gave the recorded hashes; false: severed_at is that of the replay
 
   std::size_t tick_count() const { return tool.size(); }
+  bool works(std::size_t i) const { return force[i] > 0 || severed[i] > 0; }  ///< in tick i the tool touches or cuts
   double seconds(std::size_t ticks) const { return double(ticks) * tick; }
 };
 

@@ -14,7 +14,7 @@ Path way_in_tissue(const SessionTrack& track) {
   for (const Spell& stroke : track.strokes)
     for (std::size_t i = stroke.first; i < stroke.last; ++i) {
       all.push_back(track.tip[i]);
-      if (track.force[i] > 0 || track.severed[i] > 0) inside.push_back(track.tip[i]);
+      if (track.works(i)) inside.push_back(track.tip[i]);
     }
   const Path& way = inside.size() > 1 ? inside : all;
   const std::size_t step = std::max<std::size_t>(1, way.size() / kPoints);

@@ -83,7 +83,7 @@ export function Compare({ connection, player, listing, comparison, onComparison,
               <button type="button" aria-pressed={player.aligned === "path"} disabled={progress !== null || isOther} onClick={() => void alignAlong()}>path</button>
             </div>
             <label class="field">
-              <span>by hand: the trainee is ahead by [s]</span>
+              <span>by hand: the trainee's clock shows more by [s]</span>
               <input type="number" step="0.01" value={player.path ? "" : Number(player.offset.toFixed(3))}
                 onChange={(e) => player.setOffset(Number(e.currentTarget.value) || 0)} />
             </label>

@@ -3,7 +3,7 @@ import type { Connection } from "./connection";
 import { asSeen, isFree, type Look, lookParameters, lookWords } from "./look";
 import { Problems, Section, ShownCommand, Working } from "./parts";
 import type { Player } from "./player";
-import { bytes, command, seconds } from "./text";
+import { bytes, clockText, command, seconds } from "./text";
 
 interface Exported {
   path: string;
@@ -61,7 +61,7 @@ export function ExportForm({ connection, player, look }: { connection: Connectio
 
   const align = chosenAlign ?? seenAlign(player);
   const byHand = [align, seenAlign(player)].find((key) => !kAligned.some(([known]) => known === key));
-  const aligned: [string, string][] = byHand === undefined ? kAligned : [...kAligned, [byHand, `by hand: ahead by ${byHand} s`]];
+  const aligned: [string, string][] = byHand === undefined ? kAligned : [...kAligned, [byHand, `by hand: ${clockText(Number(byHand))}`]];
   const filmed = isAsSeen ? asSeen(look, player.viewer.seen(), session.view.up) : { ...look, camera: "" };
   const slowAt = beside ? "" : slow.join(",");
   const start = async () => {

@@ -45,6 +45,11 @@ export function bytes(count: number): string {
   return count < 1e6 ? `${(count / 1e3).toFixed(0)} kB` : `${(count / 1e6).toFixed(1)} MB`;
 }
 
+/** By how much the clock of the session beside differs; a trainee who is slower comes to the same place later, and this clock shows more. */
+export function clockText(ahead: number): string {
+  return `the trainee's clock shows ${Math.abs(ahead)} s ${ahead < 0 ? "less" : "more"}`;
+}
+
 /** How long a step of the simulation, a tick, took or takes, and how long it may. */
 export function ofStep(time: number, tick: number): string {
   return `${(1e3 * time).toFixed(2)} ms of the ${Number((1e3 * tick).toPrecision(3))} ms it has`;

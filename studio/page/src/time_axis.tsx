@@ -1,6 +1,6 @@
 import { useMemo } from "preact/hooks";
 import type { Player } from "./player";
-import { seconds } from "./text";
+import { clockText, seconds } from "./text";
 
 const kSteps = [1, 2, 5]; // of numbers on an axis, times powers of ten
 const kNumbers = 8; // about as many as there is room for
@@ -92,5 +92,5 @@ export function alignedText(player: Player): string {
   if (player.aligned === "path") return "aligned along the path";
   if (player.aligned) return `aligned at the first ${player.aligned}`;
   const ahead = Number(player.offset.toFixed(3));
-  return ahead === 0 ? "both clocks begin together" : `the trainee is ${ahead > 0 ? "ahead" : "behind"} by ${Math.abs(ahead)} s`;
+  return ahead === 0 ? "both clocks begin together" : clockText(ahead);
 }

@@ -77,6 +77,7 @@ TEST_F(Compare, AClumsyCutIsWorseInEveryMeasureThatHasAnExpertsValue) {
   // The second cut lies 10 to 14 mm beside the first.
   EXPECT_GT(value_of(json, "cut_path_hausdorff_mm", "trainee"), 8);
   EXPECT_TRUE(holds(json, "\"what\": \"cut where the expert did not\"")) << json;
+  EXPECT_LT(json.find("Cut only where"), json.find("Stay on the expert's path")) << "harm comes first";
 }
 
 TEST_F(Compare, AHardPressPassesTheForceOfTheExpertAndTheDamageDepth) {

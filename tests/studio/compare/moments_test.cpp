@@ -1,0 +1,102 @@
+// The worst moments, and what to do better: harm first, and nobody is blamed for the way to the work.
+
+#include "studio/compare/moments.h"
+#include "studio/compare/advice.h"
+#include "studio/compare/report.h"
+#include "tests/studio/compare/made_tracks.h"
+
+namespace ctpm {
+namespace {
+
+class WorstMoments : public Measures {
+ protected:
+  static std::vector<compare::MomentKind> kinds_of(const compare::Comparison& comparison) {
+    std::vector<compare::MomentKind> kinds;
+    for (const compare::Moment& moment : comparison.moments) kinds.push_back(moment.kind);
+    return kinds;
+  }
+
+  /// Five ways down and up, at the end of each of which it rests.
+  compare::SessionTrack with_rests(double rest_s) const {
+    const Vec3 above{0, 0, 0.1}, below{0, 0, 0.05};
+    compare::SessionTrack track = new_track();
+    for (int i = 0; i < 5; ++i) {
+      go(track, i % 2 ? below : above, i % 2 ? above : below, 1);
+      go(track, track.tip.back(), track.tip.back(), rest_s);
+    }
+    return finished(track, scene_.model);
+  }
+};
+
+TEST_F(WorstMoments, TheWayToTheWorkIsNotBlamed) {
+  const auto touching = [&] {
+    compare::SessionTrack track = press();
+    for (std::size_t i = 800; i < 1200; ++i) track.force[i] = 1;
+    return track;
+  };
+  compare::SessionTrack track = touching();  // from where a program put it, and away to the side
+  for (std::size_t i = 0; i < track.tick_count(); ++i)
+    if (i < 600 || i > 1400) track.tip[i].x += 0.0245;
+  const compare::Comparison comparison = compare::compare_sessions(touching(), track, scene_);
+  EXPECT_TRUE(comparison.moments.empty()) << comparison.moments.front().from_s;
+  EXPECT_GT(trainee(comparison, "aligned_deviation_largest_mm"), 24) << "the measure is of the whole way";
+
+  for (Vec3& tip : track.tip) tip.x = 0.0245;
+  const compare::Comparison off = compare::compare_sessions(touching(), track, scene_);
+  ASSERT_EQ(kinds_of(off), std::vector{compare::MomentKind::deviation});
+  EXPECT_NEAR(off.moments[0].from_s, 0.8, 0.021);
+  EXPECT_NEAR(off.moments[0].to_s, 1.2, 0.021);
+  // Who waits is out of step with the expert for longer than paths are aligned, and at the right place.
+  compare::SessionTrack late = new_track();
+  go(late, {0, 0, 0.1}, {0, 0, 0.1}, 20);
+  const compare::SessionTrack then = touching();
+  go(late, {0, 0, 0.1}, {0, 0, 0.05}, 1), go(late, {0, 0, 0.05}, {0, 0, 0.1}, 1);
+  std::ranges::copy(then.force, late.force.begin() + 20000);
+  const compare::Comparison waited = compare::compare_sessions(then, finished(late, scene_.model), scene_);
+  EXPECT_GT(trainee(waited, "aligned_deviation_largest_mm"), 10);
+  EXPECT_EQ(kinds_of(waited), std::vector{compare::MomentKind::pause});
+  // Where the expert never touches, the way through the air is the work.
+  EXPECT_EQ(compare::compare_sessions(press(), track, scene_).moments.at(0).from_s, 0);
+}
+
+TEST_F(WorstMoments, HarmComesBeforePausesAndNoKindFillsTheList) {
+  using enum compare::MomentKind;
+  compare::SessionTrack expert = with_rests(0), track = with_rests(2.5);
+  const auto sever = [](compare::SessionTrack& by, std::size_t first, std::size_t count, std::size_t tick) {
+    for (std::size_t i = first; i < first + count; ++i) by.severed_at[i] = std::int64_t(tick);
+    by.severed[tick] = std::int32_t(count), by.cuts = {{tick, tick + 1}};
+  };
+  sever(expert, 0, 12, 700), sever(track, 12, 10, 700);
+  for (std::size_t press = 0; press < 4; ++press)
+    for (std::size_t i = 0; i < 100; ++i) track.force[3500 * press + 500 + i] = 4 + double(press);
+  track.zones = {"vessel"}, track.zone.assign(track.tick_count(), -1);
+  std::fill_n(track.zone.begin() + 200, 50, 0);
+
+  const compare::Comparison comparison = compare::compare_sessions(expert, track, scene_, {.force_limit = 2});
+  EXPECT_EQ(kinds_of(comparison),
+            (std::vector{zone, force, force, stray_cut, force, pause, pause, pause, force, pause, pause}));
+  EXPECT_EQ(comparison.moments.at(1).value, 7) << "of one concern the farthest beyond its limit comes first";
+  EXPECT_EQ(comparison.moments.at(8).value, 4);
+
+  const recordings::SessionStart& scene = scene_;
+  const std::vector<std::string> advice = compare::advice_of({expert, track, scene, comparison});
+  ASSERT_EQ(advice.size(), 5u);
+  EXPECT_EQ(advice[0], "Keep out of forbidden zones: 0.05 s in vessel at 0.20 s.");
+  const char* const begins[]{"Keep out", "Press more gently: 7 N", "Cut only where", "Complete the cut", "Go on"};
+  for (std::size_t i = 0; i < advice.size(); ++i) EXPECT_EQ(advice[i].find(begins[i]), 0u) << advice[i];
+}
+
+TEST_F(WorstMoments, ALimitThatIsAsGoodAsKeptComesLast) {
+  using enum compare::MomentKind;
+  compare::SessionTrack track = with_rests(1.5);
+  std::fill_n(track.force.begin(), 900, 2.08);
+  const auto kinds = [&] {
+    return kinds_of(compare::compare_sessions(with_rests(0), track, scene_, {.force_limit = 2}));
+  };
+  EXPECT_EQ(kinds(), (std::vector{pause, pause, pause, pause, pause, force}));
+  std::fill_n(track.force.begin(), 900, 2.2);
+  EXPECT_EQ(kinds().front(), force);
+}
+
+}  // namespace
+}  // namespace ctpm
