@@ -22,13 +22,6 @@
 namespace ctpm::film {
 namespace {
 
-/// Where a video's sidecar lies: beside the file, or in the folder of pictures.
-std::string sidecar_of(const std::string& video) {
-  std::error_code ignored;
-  const bool is_folder = video.ends_with('/') || std::filesystem::is_directory(video, ignored);
-  return is_folder ? (std::filesystem::path(video) / "video.json").string() : video + ".json";
-}
-
 Errors check_options(const std::string& path, const ExportOptions& options) {
   Errors errors;
   const bool is_good_rate = options.fps >= 1 && options.fps <= 240;

@@ -69,6 +69,12 @@ Result<Done> write_session(output::JsonWriter& json, const SidecarSession& sessi
 
 }  // namespace
 
+std::string sidecar_of(const std::string& video) {
+  std::error_code ignored;
+  const bool is_folder = video.ends_with('/') || std::filesystem::is_directory(video, ignored);
+  return is_folder ? (std::filesystem::path(video) / "video.json").string() : video + ".json";
+}
+
 Result<std::string> sidecar_text(const std::vector<SidecarSession>& sessions, const SidecarFacts& facts) {
   const video::VideoFacts& video = facts.video;
   output::JsonWriter json;

@@ -26,6 +26,9 @@ struct SidecarFacts {
   std::string opengl;  ///< name and version of the OpenGL implementation
 };
 
+/// Where a video's sidecar lies: beside the file, or in the folder of pictures.
+std::string sidecar_of(const std::string& video);
+
 /// The JSON beside a video: its sessions with hash and verdict; video, camera and view; the program that made it and
 /// the time that this took. Errors: a session file cannot be read for its hash.
 Result<std::string> sidecar_text(const std::vector<SidecarSession>& sessions, const SidecarFacts& facts);

@@ -25,6 +25,7 @@ Result<std::string> session_timeline(Parameters& parameters, const CallContext& 
 Result<std::string> verify_session(Parameters& parameters, const CallContext& context);
 Result<std::string> are_comparable(Parameters& parameters, const CallContext& context);
 Result<std::string> compare_sessions(Parameters& parameters, const CallContext& context);
+Result<std::string> name_export(Parameters& parameters, const CallContext& context);
 Result<std::string> export_session(Parameters& parameters, const CallContext& context);
 Result<std::string> session_motion(Parameters& parameters, const CallContext& context);
 Result<std::string> begin_training(Parameters& parameters, const CallContext& context);

@@ -22,6 +22,7 @@ constexpr std::pair<const char*, Call> kCalls[] = {
     {"session.verify", verify_session},
     {"session.compare", compare_sessions},
     {"session.export", export_session},
+    {"session.export_name", name_export},
     {"notes.read", read_notes},
     {"notes.write", write_notes},
     {"session.motion", session_motion},

@@ -3,6 +3,7 @@
 #include "recordings/session_reader.h"
 #include "studio/compare/matched_moments.h"
 #include "studio/film/export_video.h"
+#include "studio/film/sidecar.h"
 #include "studio/output/json_writer.h"
 #include "studio/server/call_table.h"
 #include "studio/server/scene_text.h"
@@ -20,6 +21,14 @@ views::LookRequest look_of(Parameters& parameters) {
   look.cutaway = parameters.text_if("cutaway").value_or("");
   look.camera = parameters.text_if("camera").value_or("");
   return look;
+}
+
+/// What lies where that video or its sidecar would be written; empty: nothing.
+std::string in_the_way_of(const std::string& video) {
+  std::error_code ignored;
+  for (const std::string& file : {video, film::sidecar_of(video)})
+    if (std::filesystem::exists(file, ignored)) return file;
+  return "";
 }
 
 }  // namespace
@@ -50,6 +59,21 @@ Result<std::string> draw_session(Parameters& parameters, const CallContext& cont
   return json.end_object().text();
 }
 
+/// A name that is taken gets a number.
+Result<std::string> name_export(Parameters& parameters, const CallContext& context) {
+  const std::filesystem::path wanted(parameters.text("path"));
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  std::string name = wanted.generic_string();
+  for (int number = 2;; ++number) {
+    const Result<std::string> place = context.folder.place(name);
+    if (!place) return place.errors();
+    if (in_the_way_of(*place).empty())
+      return output::JsonWriter().begin_object().member("path", std::string_view(name)).end_object().text();
+    const std::string numbered = wanted.stem().string() + "-" + std::to_string(number) + wanted.extension().string();
+    name = (wanted.parent_path() / numbered).generic_string();
+  }
+}
+
 Result<std::string> export_session(Parameters& parameters, const CallContext& context) {
   const std::string path = parameters.text("path"), output = parameters.text("output");
   const std::string beside = parameters.text_if("beside").value_or("");
@@ -70,8 +94,8 @@ Result<std::string> export_session(Parameters& parameters, const CallContext& co
   options.size = *parsed;
   const Result<std::string> place = context.folder.place(output);
   if (!place) return place.errors();
-  std::error_code ignored;
-  if (std::filesystem::exists(*place, ignored)) return Error{output, "exists already", "choose another name"};
+  if (const std::string file = in_the_way_of(*place); !file.empty())
+    return Error{file, "exists already", "choose another name"};
   std::vector<recordings::SessionReader> readers;
   for (const std::string& name : {path, beside}) {
     if (name.empty()) continue;

@@ -1,9 +1,10 @@
-import { useRef, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
 import { asSeen, isFree, type Look, lookParameters, lookWords } from "./look";
 import { Problems, Section, ShownCommand, Working } from "./parts";
 import type { Player } from "./player";
-import { bytes, clockText, command, seconds } from "./text";
+import { bytes, command, seconds } from "./text";
+import { alignedText } from "./time_axis";
 
 interface Exported {
   path: string;
@@ -23,9 +24,9 @@ function number(text: string): number | undefined {
 /** Choices of the command; the first is its default. */
 const kSizes = ["1280x720", "1920x1080", "854x480", "1080x1080", "720x1280"];
 const kOverlays: [string, string][] = [["full", "full"], ["small", "small"], ["none", "none"]];
-const kAligned: [string, string][] = [["", "path, else first contact"], ["path", "path of the tool"], ["contact", "first contact"], ["cut", "first cut"], ["clock", "clock"]];
-/** How the command brings both together as they are seen here. */
-const seenAlign = (player: Player) => player.aligned || (player.offset === 0 ? "clock" : String(Number(player.offset.toFixed(6))));
+const kAligned: [string, string][] = [["path", "path of the tool, slowing one down"], ["contact", "first contact, slowing one down"], ["cut", "first cut, slowing one down"], ["clock", "both clocks, as they were recorded"]];
+/** How the command brings both together as they are seen here: at an event the page moves one of them, which the command says in seconds. */
+const seenAlign = (player: Player) => player.path ? "path" : player.offset === 0 ? "clock" : String(Number(player.offset.toFixed(6)));
 const kKept = 60000; // until a download has begun [ms]
 const kSlow: [string, string][] = [["cut", "cuts"], ["damage", "damage"], ["worst", "largest force and depth"]];
 
@@ -38,53 +39,85 @@ async function download(connection: Connection, path: string): Promise<void> {
   setTimeout(() => URL.revokeObjectURL(link.href), kKept);
 }
 
-/** What a film is called unless something else is chosen: beside the session, a trainee's beside an expert's after both. */
-function filmName(path: string, beside: string | undefined): string {
+/** What a film is called unless something else is chosen: beside the session, a trainee's beside an expert's after both; around
+    a moment, with that. */
+function filmName(path: string, beside: string | undefined, moment: string): string {
   const stem = (file: string) => file.replace(/\.ctpm$/, "");
-  return `${beside === undefined ? stem(path) : `${stem(beside)}-beside-${stem(path).replace(/^.*\//, "")}`}.mp4`;
+  return `${beside === undefined ? stem(path) : `${stem(beside)}-beside-${stem(path).replace(/^.*\//, "")}`}${moment}.mp4`;
 }
 
-/** A video of what is seen. */
-export function ExportForm({ connection, player, look }: { connection: Connection; player: Player; look: Look }) {
-  const { session } = player.tracks.get(0)!;
-  const beside = player.tracks.get(1)?.session.path;
-  const [chosenOutput, setOutput] = useState<string | null>(null), output = chosenOutput ?? filmName(session.path, beside);
-  const [from, setFrom] = useState("0"), [to, setTo] = useState("");
-  const [speed, setSpeed] = useState("1"), [fps, setFps] = useState("30");
-  const [size, setSize] = useState(kSizes[0]), [overlay, setOverlay] = useState("full"), [chosenAlign, setAlign] = useState<string | null>(null);
-  const [isAsSeen, setAsSeen] = useState(true);
-  const [slow, setSlow] = useState<string[]>([]), [isDifferentShown, showDifferent] = useState(false);
+/** An export that goes on, or is done. */
+export interface ExportJob {
+  progress: [number, number] | null; // null: none goes on
+  result: Exported | null;
+  error: Error | null;
+  start(params: object): Promise<void>;
+  cancel(): void;
+  fail(error: Error): void;
+}
+
+export function useExport(connection: Connection): ExportJob {
   const [progress, setProgress] = useState<[number, number] | null>(null);
   const [result, setResult] = useState<Exported | null>(null);
-  const [error, setError] = useState<Error | null>(null);
+  const [error, fail] = useState<Error | null>(null);
   const stop = useRef<AbortController | null>(null);
-
-  const align = chosenAlign ?? seenAlign(player);
-  const byHand = [align, seenAlign(player)].find((key) => !kAligned.some(([known]) => known === key));
-  const aligned: [string, string][] = byHand === undefined ? kAligned : [...kAligned, [byHand, `by hand: ${clockText(Number(byHand))}`]];
-  const filmed = isAsSeen ? asSeen(look, player.viewer.seen(), session.view.up) : { ...look, camera: "" };
-  const slowAt = beside ? "" : slow.join(",");
-  const start = async () => {
+  const start = async (params: object) => {
     stop.current = new AbortController();
-    setError(null), setResult(null), setProgress([0, 1]);
-    const params = {
-      path: session.path, beside, output, from_s: number(from), to_s: number(to), speed: number(speed), fps: number(fps), size, overlay,
-      align: (beside && align) || undefined, slow_at: slowAt || undefined, allow_diverged: isDifferentShown, ...lookParameters(filmed),
-    };
+    fail(null), setResult(null), setProgress([0, 1]);
     try {
       setResult(await connection.call<Exported>("session.export", params,
         { signal: stop.current.signal, progress: (done, total) => setProgress([done, total]) }));
     } catch (failure) {
-      setError(failure as Error);
+      fail(failure as Error);
     }
     setProgress(null);
   };
+  return { progress, result, error, start, cancel: () => stop.current?.abort(), fail };
+}
+
+/** A video of what is seen. */
+export function ExportForm({ connection, player, look, job: { progress, result, error, start, cancel, fail } }: {
+  connection: Connection;
+  player: Player;
+  look: Look;
+  job: ExportJob;
+}) {
+  const { session } = player.tracks.get(0)!;
+  const beside = player.tracks.get(1)?.session.path;
+  const [chosenOutput, setOutput] = useState<string | null>(null), [moment, setMoment] = useState("");
+  const [from, setFrom] = useState("0"), [to, setTo] = useState("");
+  const [speed, setSpeed] = useState("1"), [fps, setFps] = useState("30");
+  const [size, setSize] = useState(kSizes[0]), [overlay, setOverlay] = useState("full"), [chosenAlign, setAlign] = useState("seen");
+  const [isAsSeen, setAsSeen] = useState(true);
+  const [slow, setSlow] = useState<string[]>([]), [isDifferentShown, showDifferent] = useState(false);
+
+  const wanted = chosenOutput ?? filmName(session.path, beside, moment);
+  const [unused, setUnused] = useState({ by: "", name: "" }); // what is wanted, and what it may be called
+  useEffect(() => {
+    if (progress) return;
+    let isWanted = true;
+    connection.call<{ path: string }>("session.export_name", { path: wanted }).then(({ path }) => isWanted && setUnused({ by: wanted, name: path }), () => {}); // an export says why
+    return () => void (isWanted = false);
+  }, [wanted, progress === null]);
+  useEffect(() => {
+    if (result?.path === chosenOutput) setOutput(null);
+  }, [result]);
+  const isKnown = unused.by === wanted, output = chosenOutput ?? (isKnown ? unused.name : wanted), isTaken = isKnown && unused.name !== output;
+  const align = chosenAlign === "seen" ? seenAlign(player) : chosenAlign;
+  const filmed = isAsSeen ? asSeen(look, player.viewer.seen(), session.view.up) : { ...look, camera: "" };
+  const slowAt = beside ? "" : slow.join(",");
+  const params = {
+    path: session.path, beside, output, from_s: number(from), to_s: number(to), speed: number(speed), fps: number(fps), size, overlay,
+    align: beside && align, slow_at: slowAt || undefined, allow_diverged: isDifferentShown, ...lookParameters(filmed),
+  };
   const around = () => {
-    setFrom(Math.max(0, player.time - 1).toFixed(2));
-    setTo(Math.min(session.info.duration_s, player.time + 1).toFixed(2));
+    const end = Math.floor(100 * session.info.duration_s) / 100; // one that is rounded up is after the session
+    setFrom(Math.max(0, Math.min(player.time, end) - 1).toFixed(2));
+    setTo(Math.min(end, player.time + 1).toFixed(2));
+    setMoment(`-${Math.max(0, player.timeOf(beside ? 1 : 0)).toFixed(2)}s`);
   };
   const words = (flag: string, value: string, usual: string) => (value !== usual && value !== "" ? [flag, value] : []);
-  const shown = command("export", session.path, "-o", output, ...(beside ? ["--beside", beside, ...words("--align", align, "")] : []),
+  const shown = command("export", session.path, "-o", output, ...(beside ? ["--beside", beside, "--align", align] : []),
     ...(number(from) ? ["--from-s", from] : []), ...words("--to-s", to, ""), ...words("--speed", speed, "1"), ...words("--fps", fps, "30"),
     ...words("--size", size, kSizes[0]), ...words("--overlay", overlay, "full"), ...words("--slow-at", slowAt, ""),
     ...(isDifferentShown ? ["--allow-diverged"] : []), ...lookWords(filmed));
@@ -109,16 +142,22 @@ export function ExportForm({ connection, player, look }: { connection: Connectio
     <Section title="Video">
       <p class="hint">View and cutaway are those below the picture.</p>
       {field("file in the folder: .mp4, .avi", output, setOutput)}
+      {isTaken && <p class="warning">{output} exists already; {unused.name} does not.</p>}
       <div class="pair">
-        {field("from [s]", from, setFrom, "number")}
-        {field("to [s]", to, setTo, "number")}
+        {field("from [s]", from, (text) => (setFrom(text), setMoment("")), "number")}
+        {field("to [s]", to, (text) => (setTo(text), setMoment("")), "number")}
       </div>
       <button type="button" onClick={around}>1 s before {seconds(player.time, 2)} to 1 s after</button>
       <div class="pair">
         {field("times real speed", speed, setSpeed, "number")}
         {field("pictures a second", fps, setFps, "number")}
       </div>
-      {beside ? choice("bring both together by", align, setAlign, aligned) : (
+      {beside ? (
+        <>
+          {choice("bring both together", chosenAlign, setAlign, [["seen", `as seen here: ${alignedText(player)}`], ...kAligned])}
+          <p class="hint">As seen here, each goes at its own pace. What slows one down, the half that is ahead, shows other moments beside each other than are seen here.</p>
+        </>
+      ) : (
         <fieldset>
           <legend>four times slower at</legend>
           {kSlow.map(([key, name]) => tick(name, slow.includes(key), (on) => setSlow(kSlow.map(([k]) => k).filter((k) => (k === key ? on : slow.includes(k))))))}
@@ -136,13 +175,13 @@ export function ExportForm({ connection, player, look }: { connection: Connectio
       {session.info.physics_remark && tick("even if the replay differs, marked on every frame", isDifferentShown, showDifferent)}
       <ShownCommand text={shown} />
       <div class="always-seen">
-        {progress ? <Working what="exporting" done={progress[0]} total={progress[1]} onCancel={() => stop.current?.abort()} />
-          : <button type="button" class="main" disabled={!output} onClick={() => void start()}>Export</button>}
+        {progress ? <Working what="exporting" done={progress[0]} total={progress[1]} onCancel={cancel} />
+          : <button type="button" class="main" disabled={!output || isTaken} onClick={() => void start(params)}>Export</button>}
         <Problems error={error} />
         {result && (
           <p class="good" role="status">{result.path}: {result.frames} frames, {result.codec}, {bytes(result.bytes)}, in {seconds(result.elapsed_s, 1)}; replay {result.same_as_recorded ? "same as recorded" : "DIFFERS"}{result.note && `; ${result.note}`}</p>
         )}
-        {result && <button type="button" onClick={() => download(connection, result.path).catch(setError)}>Download {result.path.replace(/^.*\//, "")}</button>}
+        {result && <button type="button" onClick={() => download(connection, result.path).catch(fail)}>Download {result.path.replace(/^.*\//, "")}</button>}
       </div>
     </Section>
   );

@@ -6,31 +6,39 @@ import type { Note, Notes } from "./protocol";
 import { hashOf } from "./place";
 import { seconds } from "./text";
 
+/** Of sessions by path; an error: they cannot be read. */
+export type ReadNotes = Record<string, Notes | Error>;
+
+/** The notes of sessions that are open, read again when `isShown` changes; somebody else may have written some. */
+export function useNotes(connection: Connection, paths: string[], isShown: boolean): [ReadNotes, (path: string, notes: Notes) => void] {
+  const [all, setAll] = useState<ReadNotes>({});
+  const take = (path: string, read: Notes | Error) => setAll((now) => ({ ...now, [path]: read }));
+  useEffect(() => {
+    for (const path of paths) connection.call<Notes>("notes.read", { path }).then((read) => take(path, read), (failure) => take(path, failure));
+  }, [...[0, 1].map((stage) => paths[stage]), isShown]);
+  return [all, take];
+}
+
 /** Notes at moments of a session, kept in a file beside it. */
-export function NotesPanel({ connection, player, onNotes }: { connection: Connection; player: Player; onNotes: (notes: Note[], stage: number) => void }) {
+export function NotesPanel({ connection, player, all, onNotes }: {
+  connection: Connection;
+  player: Player;
+  all: ReadNotes;
+  onNotes: (path: string, notes: Notes) => void;
+}) {
   const second = player.tracks.get(1)?.session.path;
   const [wanted, setWanted] = useState(1); // of a pair: what is reviewed is the trainee's
   const stage = second ? wanted : 0, { path, info } = player.tracks.get(stage)!.session;
   const time = player.timeOf(stage), isIn = time >= 0 && time <= info.duration_s;
-  const [notes, setNotes] = useState<Notes | null>(null);
+  const read = all[path], notes = read && !(read instanceof Error) ? read : null; // until they are there nothing can be added to them
   const [text, setText] = useState("");
   const [error, setError] = useState<Error | null>(null);
   const [copied, setCopied] = useState("");
-  const take = (read: Notes) => {
-    setNotes(read);
-    onNotes(read.notes, stage);
-  };
-  useEffect(() => {
-    let isWanted = true;
-    setNotes(null); // until they are there nothing can be added to them: they were those of the other session
-    connection.call<Notes>("notes.read", { path }).then((read) => isWanted && take(read), (failure) => isWanted && setError(failure));
-    return () => void (isWanted = false);
-  }, [path]);
 
   const write = async (list: Note[]) => {
     setError(null);
     try {
-      take(await connection.call<Notes>("notes.write", { path, revision: notes!.revision, notes: list }));
+      onNotes(path, await connection.call<Notes>("notes.write", { path, revision: notes!.revision, notes: list }));
       return true;
     } catch (failure) {
       setError(failure as Error);
@@ -67,7 +75,7 @@ export function NotesPanel({ connection, player, onNotes }: { connection: Connec
             }} />
         </label>
         <button type="button" class="main" disabled={!text.trim() || !notes || !isIn} onClick={() => void add()}>Add note</button>
-        <Problems error={error} />
+        <Problems error={error ?? (read instanceof Error ? read : null)} />
         {notes?.notes.length === 0 && <p class="hint">No notes yet. They are kept in a file beside the session, which never changes.</p>}
         <ul class="jumps">
           {notes?.notes.map((note, i) => (

@@ -16,6 +16,7 @@ export interface Track {
 /** Longest step of a playback [s]: where the program simulates slower, playing becomes slower instead of jumping. */
 const kLongestStep = 0.1;
 const kTogether = 1e-3; // of two times [s]
+const kLeastTogether = 0.1; // of two sessions that are brought together by hand [s]
 const kPatience = 30; // with the picture of the other session [ms]
 const kTimelinePoints = 12000; // so that a part of a long session can be looked at closely
 
@@ -98,7 +99,7 @@ export class Player {
       const hasBoth = second.status === "fulfilled" && second.value !== null;
       this.isPathWanted = hasBoth && align === "path";
       const isByEvent = hasBoth && (align === "contact" || align === "cut") && this.bringTogether(align);
-      if (hasBoth && ahead !== undefined && !isByEvent) this.offset = ahead;
+      if (hasBoth && ahead !== undefined && !isByEvent) this.offset = this.allowed(ahead);
       else if (!isByEvent && (!hasBoth || !this.bringTogether("contact"))) this.offset = 0;
       if (hasBoth && besideTime !== undefined && comparison) this.moveBeside(besideTime, comparison);
       else this.move(time ?? 0);
@@ -281,8 +282,21 @@ export class Player {
     } as Place;
   }
 
+  /** The least and the most that the session beside may be ahead by [s]: some of both is left beside each other. */
+  get offsets(): { least: number; most: number } {
+    const [first = Infinity, second = Infinity] = [0, 1].map((stage) => this.tracks.get(stage)?.session.info.duration_s);
+    const together = Math.min(kLeastTogether, first / 2, second / 2);
+    return { least: wholeMicroseconds(together - first), most: wholeMicroseconds(second - together) };
+  }
+
+  /** The nearest one of those. */
+  private allowed(offset: number): number {
+    return Math.min(Math.max(offset, this.offsets.least), this.offsets.most);
+  }
+
+  /** As near to it as both sessions stay beside each other. */
   setOffset(offset: number): void {
-    this.offset = offset, this.path = null, this.aligned = "";
+    this.offset = this.allowed(offset), this.path = null, this.aligned = "";
     this.move(this.time);
     this.onChange();
   }

@@ -1,24 +1,26 @@
+import type { ComponentChildren } from "preact";
 import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
 import { Compare } from "./compare";
 import { drawInto, sizeOf, watchSize } from "./drawing";
-import { ExportForm } from "./export_form";
+import { ExportForm, useExport } from "./export_form";
 import { freeCamera, isFree, kPlainLook, type Look, mirrored, planeOf } from "./look";
 import { LegendBar, LookFields } from "./look_fields";
-import { NotesPanel } from "./notes";
+import { NotesPanel, useNotes } from "./notes";
 import { Moment, shownEvents } from "./moment";
+import { Panel } from "./panel";
 import { Empty, Problems } from "./parts";
 import type { Place } from "./place";
-import { Player } from "./player";
-import type { ComparisonResult, Legend, Listing, Note } from "./protocol";
-import { Clocks } from "./time_axis";
+import { Player, type Track } from "./player";
+import type { ComparisonResult, Legend, Listing } from "./protocol";
+import { Clocks, ownTime } from "./time_axis";
 import { Mark, Timeline } from "./timeline";
 import { bytes, seconds } from "./text";
 import { kTurns, Viewer } from "./viewer";
 
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4];
 const kPanels = ["moment", "compare", "notes", "export"] as const;
-type Panel = (typeof kPanels)[number];
+type PanelName = (typeof kPanels)[number];
 
 export function Review({ connection, listing, place, onPlace }: {
   connection: Connection;
@@ -32,10 +34,10 @@ export function Review({ connection, listing, place, onPlace }: {
   const [version, setVersion] = useState(0);
   const [error, setError] = useState<Error | null>(null); // of what is seen: the next picture is without it
   const [unopened, setUnopened] = useState<{ path: string; error: Error } | null>(null); // said until another session is chosen
-  const [panel, setPanel] = useState<Panel>("moment");
-  const [notes, setNotes] = useState<{ list: Note[]; stage: number }>({ list: [], stage: 0 });
+  const [panel, setPanel] = useState<PanelName>("moment");
   const [comparison, setComparison] = useState<ComparisonResult | null>(null);
   const [look, setLook] = useState<Look>(place.look ?? kPlainLook);
+  const exporting = useExport(connection); // goes on while another tab or session is looked at
   const turned = useRef<string | null>(null); // camera to which a hand has turned the view, until another one is chosen
   const newest = useRef(look);
   newest.current = look;
@@ -120,6 +122,7 @@ export function Review({ connection, listing, place, onPlace }: {
   }, [player]);
 
   const first = player?.tracks.get(0), second = player?.tracks.get(1);
+  const [notes, takeNotes] = useNotes(connection, [...(player?.tracks.values() ?? [])].map(({ session }) => session.path), panel === "notes");
   const frame = first?.scene.frame ?? null, other = second?.scene.frame ?? null;
 
   // The program says from where it is seen, unless a hand has turned the view.
@@ -191,11 +194,24 @@ export function Review({ connection, listing, place, onPlace }: {
     if (!first) return [];
     const of = (stage: number, own: number, kind: string, text: string): Mark =>
       ({ stage, time: stage === 0 ? own : player!.firstAt(own), kind, title: `${seconds(own)} ${text}` });
-    return [
-      ...[...player!.tracks.values()].flatMap(({ stage, session: { info } }) => shownEvents(info.events).map((e) => of(stage, e.tick * info.tick_s, e.kind, e.text))),
-      ...notes.list.map((note) => of(notes.stage, note.time_s, "note", note.text)),
-    ];
+    return [...player!.tracks.values()].flatMap(({ stage, session: { path, info } }) => {
+      const read = notes[path];
+      return [
+        ...shownEvents(info.events).map((e) => of(stage, e.tick * info.tick_s, e.kind, e.text)),
+        ...(!read || read instanceof Error ? [] : read.notes).map((note) => of(stage, note.time_s, "note", note.text)),
+      ];
+    });
   }, [first, second, notes, version]);
+
+  const contentOf = (shown: Player, { session }: Track): Record<PanelName, ComponentChildren> => ({
+    moment: <Moment connection={connection} player={shown} frame={frame} other={other} />,
+    compare: (
+      <Compare connection={connection} player={shown} listing={listing} comparison={comparison} onComparison={setComparison}
+        onBeside={openBeside} onSwap={() => void swap()} />
+    ),
+    notes: <NotesPanel connection={connection} player={shown} all={notes} onNotes={takeNotes} />,
+    export: <ExportForm key={session.path} connection={connection} player={shown} look={look} job={exporting} />,
+  });
 
   return (
     <div class="room review">
@@ -226,8 +242,8 @@ export function Review({ connection, listing, place, onPlace }: {
         )}
         {first && (
           <div class="captions">
-            <span class="first"><b>{second && "expert: "}{first.session.path}{second && ` ${seconds(player!.timeOf(0))}`}</b></span>
-            {second && <span class="second"><b>trainee: {second.session.path} {seconds(player!.timeOf(1))}</b></span>}
+            <span class="first"><b>{second && "expert: "}{first.session.path}{second && ` ${ownTime(player!, 0)}`}</b></span>
+            {second && <span class="second"><b>trainee: {second.session.path} {ownTime(player!, 1)}</b></span>}
           </div>
         )}
         {second && player!.otherScene && (
@@ -240,6 +256,9 @@ export function Review({ connection, listing, place, onPlace }: {
           <div class="look-bar">
             <LookFields look={look} onLook={chooseLook} onOtherSide={otherSide} view={first.session.view} />
           </div>
+        )}
+        {player?.isPlaying && player.reached < 0.9 * player.speed && (
+          <p class="busy pace">plays at {player.reached.toFixed(2)} ×: this machine simulates no faster</p>
         )}
         <Problems error={unopened?.error ?? error} onClose={unopened && first ? () => setUnopened(null) : undefined} />
       </div>
@@ -260,9 +279,6 @@ export function Review({ connection, listing, place, onPlace }: {
                 </select>
               </label>
               <Clocks player={player} />
-              {player.isPlaying && player.reached < 0.9 * player.speed && (
-                <span class="hint">plays at {player.reached.toFixed(2)} ×: this machine simulates no faster</span>
-              )}
             </div>
             <Timeline player={player} marks={marks} version={version} />
           </>
@@ -277,15 +293,7 @@ export function Review({ connection, listing, place, onPlace }: {
                   onClick={() => setPanel(name)}>{name}</button>
               ))}
             </div>
-            <div id="panel" role="tabpanel" aria-labelledby={`tab-${panel}`}>
-              {panel === "moment" && <Moment connection={connection} player={player} frame={frame} other={other} />}
-              {panel === "compare" && (
-                <Compare connection={connection} player={player} listing={listing} comparison={comparison} onComparison={setComparison}
-                  onBeside={openBeside} onSwap={() => void swap()} />
-              )}
-              {panel === "notes" && <NotesPanel connection={connection} player={player} onNotes={(list, stage) => setNotes({ list, stage })} />}
-              {panel === "export" && <ExportForm key={first.session.path} connection={connection} player={player} look={look} />}
-            </div>
+            {kPanels.map((name) => <Panel key={name} name={name} isShown={panel === name} version={version}>{contentOf(player, first)[name]}</Panel>)}
           </>
         ) : (
           <p class="hint">Space plays, ← and → move by 10 ms, with Shift by 100 ms. The mouse turns the view and its wheel comes closer; so do A, D, W, S, + and −. Comma and full stop zoom the timeline, 0 shows all of it.</p>

@@ -65,13 +65,20 @@ function axesOf(player: Player, from: number, to: number) {
   );
 }
 
+const hasNotBegun = (player: Player, stage: number) => player.timeOf(stage) < -5e-4;
+
+/** The moment on a session's own clock. */
+export function ownTime(player: Player, stage: number): string {
+  return hasNotBegun(player, stage) ? "not begun" : seconds(player.timeOf(stage));
+}
+
 /** The moment on a session's own clock, and how long it is: always as wide, or the picture above would change its height. */
 function OwnTime({ player, stage, name }: { player: Player; stage: number; name: string }) {
   const time = player.timeOf(stage), { duration_s } = player.tracks.get(stage)!.session.info;
-  const where = time < -5e-4 ? "not begun" : time > duration_s + 5e-4 ? "has ended" : `of ${seconds(duration_s, duration_s < 100 ? 1 : 0)}`;
+  const isEarly = hasNotBegun(player, stage), where = isEarly ? "not begun" : time > duration_s + 5e-4 ? "has ended" : `of ${seconds(duration_s, duration_s < 100 ? 1 : 0)}`;
   return (
     <output class={name}>
-      <span style={{ "--characters": String(seconds(duration_s).length + 1) }}>{seconds(time)}</span> <small>{where}</small>
+      <span style={{ "--characters": String(seconds(duration_s).length + 1) }}>{!isEarly && seconds(time)}</span> <small>{where}</small>
     </output>
   );
 }
@@ -91,6 +98,8 @@ export function Clocks({ player }: { player: Player }) {
 export function alignedText(player: Player): string {
   if (player.aligned === "path") return "aligned along the path";
   if (player.aligned) return `aligned at the first ${player.aligned}`;
-  const ahead = Number(player.offset.toFixed(3));
-  return ahead === 0 ? "both clocks begin together" : clockText(ahead);
+  const ahead = Number(player.offset.toFixed(3)), { least, most } = player.offsets;
+  if (ahead === 0) return "both clocks begin together";
+  const isLimit = player.offset === least || player.offset === most;
+  return `${clockText(ahead)}${isLimit ? ", the most with which both overlap" : ""}`;
 }

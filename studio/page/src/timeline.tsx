@@ -3,7 +3,7 @@ import uPlot from "uplot";
 import type { Player } from "./player";
 import type { TimelineData } from "./protocol";
 import { seconds } from "./text";
-import { alignedText, TimeAxes, Whose } from "./time_axis";
+import { alignedText, ownTime, TimeAxes, Whose } from "./time_axis";
 
 export interface Mark {
   stage: number;
@@ -133,7 +133,7 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
       head.current?.style.setProperty("--at", String(share));
       if (slider.current && document.activeElement !== slider.current) slider.current.value = String(player.time);
       slider.current?.setAttribute("aria-valuetext",
-        player.tracks.has(1) ? `expert ${seconds(player.time)}, trainee ${seconds(player.timeOf(1))}` : seconds(player.time));
+        player.tracks.has(1) ? `expert ${ownTime(player, 0)}, trainee ${ownTime(player, 1)}` : seconds(player.time));
       for (const { element, at, digits } of rows.current) {
         const text = at().map((value) => (value === null ? "–" : value.toFixed(digits))).join(" · ");
         if (element.dataset.at !== text) element.dataset.at = text;

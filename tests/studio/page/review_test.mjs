@@ -128,6 +128,7 @@ step("keys move and play it", async () => {
   await page.waitForTimeout(300);
   assert.equal(await clock(), paused);
   // At a tenth of the speed, and four times as fast: as far as time has gone, or less where the machine is slow.
+  const place = () => page.locator(".transport button.main").evaluate((button) => button.getBoundingClientRect().y), rests = await place();
   const rateAt = async (speed) => {
     await page.locator(".transport select").selectOption(String(speed));
     await page.keyboard.press("Home");
@@ -136,6 +137,7 @@ step("keys move and play it", async () => {
     await page.waitForTimeout(800);
     await page.waitForFunction((from) => Number.parseFloat(document.querySelector(".clock").textContent) > from, from); // the picture before may take long
     const [went, far] = [(Date.now() - began) / 1e3, (await clock()) - from];
+    assert.equal(await place(), rests, `where Pause is, ${await page.locator(".pace").count() ? "and that it plays slower is said" : "playing"}`);
     await page.click(".transport button.main");
     assert.ok(far > 0 && far <= speed * (went + 0.1), `${speed} x: ${far} s in ${went} s`);
     return far / went;

@@ -270,6 +270,18 @@ TEST_F(Reviewing, AnExportIsTheCommandsAndCanBeCancelled) {
   ASSERT_EQ(command.code, 0) << command.err;
   EXPECT_EQ(testing::slurp(file("page.avi")), testing::slurp(file("command.avi")));
   EXPECT_NE(client.call("session.export", request)["errors"].dump().find("exists already"), std::string::npos);
+  // A name that neither a video nor a sidecar has; an export says of both that they are there before it looks at
+  // anything else.
+  const auto name = [&](const std::string& path) { return client.call("session.export_name", {{"path", path}}); };
+  EXPECT_EQ(name("new.avi")["result"]["path"], "new.avi");
+  EXPECT_EQ(name("page.avi")["result"]["path"], "page-2.avi");
+  std::ofstream(folder_.path() / "page-2.avi.json") << "{}";
+  EXPECT_EQ(name("page.avi")["result"]["path"], "page-3.avi");
+  EXPECT_TRUE(name("../page.avi").contains("errors"));
+  const nlohmann::json refused =
+      client.call("session.export", {{"path", kCut}, {"beside", "nothing.ctpm"}, {"output", "page-2.avi"}})["errors"];
+  EXPECT_EQ(refused[0]["where"], "page-2.avi.json") << refused;
+  EXPECT_EQ(refused[0]["message"], "exists already") << refused;
   // Its page may fetch it, and nothing else: not what is in the folder, nor what lies where it was.
   const auto fetch = [&](const std::string& path, bool has_token = true) {
     return testing::response_to(serving.port(), serving.head("GET /film/" + path, has_token ? serving.bearer() : ""));
