@@ -105,6 +105,8 @@ const kFirstAdvice = 2; // sentences that stand above the worst moments, so that
 /** What a trainee needs first: what to do better, and the worst moments. `onMoment` gets a time of the trainee's session. */
 export function Outcome({ comparison, onMoment }: { comparison: ComparisonResult; onMoment: (time: number) => void }) {
   const { moments, advice } = comparison.comparison, more = advice.slice(kFirstAdvice);
+  const [last, setLast] = useState(-1); // moment that was looked at
+  useEffect(() => setLast(-1), [comparison]);
   return (
     <>
       <Section title="What to do better">
@@ -115,7 +117,10 @@ export function Outcome({ comparison, onMoment }: { comparison: ComparisonResult
         <ul class="jumps of-trainee">
           {moments.map((moment, i) => (
             <li key={i}>
-              <button type="button" onClick={() => onMoment(moment.worst_s)}>
+              <button type="button" aria-current={i === last} onClick={() => {
+                setLast(i);
+                onMoment(moment.worst_s);
+              }}>
                 <span class="number">{seconds(moment.worst_s, 2)}</span> {moment.what}: {short(moment.value, 3)} {moment.unit}
                 {moment.limit != null && `, limit ${short(moment.limit, 3)} ${moment.unit}`}
               </button>

@@ -262,10 +262,10 @@ step("along the path both tools are at the same place of it, and by hand as far 
   assert.deepEqual(await scrubTo(2), [2, 2.25]);
   assert.equal(await page.locator("#panel [aria-label='Align at'] button[aria-pressed=true]").count(), 0);
   // Not so far that nothing of both is left beside each other.
-  for (const [asked, limit, word] of [[9999, clumsy.duration_s - 0.1, "ahead"], [-9999, 0.1 - expert.duration_s, "behind"]]) {
+  for (const [asked, limit, word] of [[9999, clumsy.duration_s - 0.1, "more"], [-9999, 0.1 - expert.duration_s, "less"]]) {
     await byHand(asked);
     await page.waitForFunction((limit) => document.querySelector("#panel input[type=number]").value === limit, String(Number(limit.toFixed(3))));
-    assert.equal(await page.locator(".aligned").innerText(), `the trainee is ${word} by ${Number(Math.abs(limit).toFixed(3))} s, the most with which both overlap`);
+    assert.equal(await page.locator(".aligned").innerText(), `the trainee's clock shows ${Number(Math.abs(limit).toFixed(3))} s ${word}, the most with which both overlap`);
   }
   await byHand(0.25);
   await scrubTo(2);
