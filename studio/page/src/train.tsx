@@ -219,7 +219,8 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
   };
   const leave = () => {
     last.current = null;
-    hold(false);
+    trainer?.leave();
+    setTick((t) => t + 1);
   };
   // The pointer's motion as it comes, not with the screen's next frame.
   const moved = useRef(move);
@@ -283,7 +284,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
           </Empty>
         )}
         {phase === "running" && frame && trainer && !trainer.awaited && !trainer.isHeld && !trainer.isLedByKeys && !isTouch && (
-          <div ref={ring} class="take-up" hidden aria-hidden="true"><span>move the pointer here to take it up</span></div>
+          <div ref={ring} class="take-up" hidden aria-hidden="true"><span>{trainer.isLetGo ? "Space or a click takes it up" : "move the pointer here to take it up"}</span></div>
         )}
         {phase === "running" && frame && (
           <div class="force-bar" role="meter" aria-label="Force" aria-valuemin={0} aria-valuemax={limit} aria-valuenow={Number(force.toFixed(2))}>

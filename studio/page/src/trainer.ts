@@ -55,8 +55,8 @@ export class Trainer {
   onNote: (text: string) => void = () => {}; // what is odd about the device
   onFailing: (problem: string) => void = () => {}; // what is recorded cannot be saved now
   isLedByKeys = false; // and not by the pointer since
+  isLetGo = false; // by a key, with the pointer still in the picture
   private held = false;
-  private isLetGo = false; // by a key, with the pointer still beside it
   private isLive = false; // its frames come
   private bears = { force_n: Infinity, depth_m: 0 }; // the hand, before it gives way
   private camera = 0; // of the scene, through which the hand looked last
@@ -90,7 +90,7 @@ export class Trainer {
     return this.held;
   }
   set isHeld(isHeld: boolean) {
-    this.held = isHeld, this.isLedByKeys = false;
+    this.held = isHeld, this.isLedByKeys = this.isLetGo = false;
     this.hasBegun ||= isHeld;
   }
 
@@ -192,14 +192,20 @@ export class Trainer {
   /** Takes the tool up where it is, with a pointer that comes to it at a place of the picture [px]. What holds it does not
       move it yet, so that it is never carried from where the pointer came in. */
   reach(x: number, y: number): void {
-    const tool = this.toolPixel, isNear = tool !== null && Math.hypot(tool.x - x, tool.y - y) < kTakeUp;
-    if (!isNear) this.isLetGo = false;
-    this.isHeld ||= isNear && !this.isLetGo;
+    if (this.isLetGo) return;
+    const tool = this.toolPixel;
+    this.isHeld ||= tool !== null && Math.hypot(tool.x - x, tool.y - y) < kTakeUp;
   }
 
-  /** The tool stays where it is, while the pointer goes elsewhere: until it has gone away and come back. */
+  /** The tool stays where it is, wherever the pointer goes: until that holds it again, or has left the picture. */
   letGo(): void {
     this.isHeld = false, this.isLetGo = true;
+  }
+
+  /** The pointer has left the picture. */
+  leave(): void {
+    if (this.isHeld) this.isHeld = false;
+    this.isLetGo = false;
   }
 
   /** Moves the hand in its plane, by pixels of the picture. */

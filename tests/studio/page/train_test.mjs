@@ -292,19 +292,23 @@ step("the mouse presses, cuts and records", async () => {
   const behind = await reading(page, "behind the clock"), newest = await reading(page, "newest step");
   const depth = await reading(page, "depth"); // of the blade, along it
   assert.ok(depth > 1 && depth < 60, `${depth} mm`);
-  // The tool stays in the wound while the pointer goes to a button, in a step or held by the picture.
+  // The tool stays in the wound while the pointer goes to a button, over it too; by a key, or where the picture held it.
   const place = await studio.handAtRest(), at = { x: middle.x + 160, y: middle.y + 240 };
+  const ring = () => page.locator(".take-up").evaluate((one) => (({ x, y, width, height }) => ({ x: x + width / 2, y: y + height / 2 }))(one.getBoundingClientRect()));
   const stays = async () => assert.ok(Math.hypot(...minus(await studio.handAtRest(), place)) < 1e-6);
   await page.keyboard.press(" ");
   await page.waitForSelector(".view.running:not(.held)");
-  await moveMouse(page, at, { x: -120, y: -60 }, 8);
+  const tool = await ring();
+  await moveMouse(page, at, { x: tool.x - at.x, y: tool.y - at.y }, 8);
+  await moveMouse(page, tool, { x: 60, y: -60 }, 6);
   await stays();
+  assert.equal(await page.locator(".take-up").innerText(), "Space or a click takes it up");
   await page.mouse.down();
   await page.mouse.up();
   await page.waitForFunction(() => document.pointerLockElement);
   await page.keyboard.press("Escape");
   await page.waitForSelector(".view.running:not(.held)");
-  await moveMouse(page, { x: at.x - 120, y: at.y - 60 }, { x: -60, y: 0 }, 6);
+  await moveMouse(page, { x: tool.x + 60, y: tool.y - 60 }, { x: -60, y: 60 }, 6);
   await stays();
   assert.ok(behind >= 0 && newest > 0 && Number(/under ([\d.]+) ms/.exec(ticks)[1]) > 0, `${behind} s behind, tick of ${newest} ms, ${ticks}`);
   await end(page);
