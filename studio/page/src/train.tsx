@@ -197,12 +197,6 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
     return () => kinds.forEach((kind) => removeEventListener(kind, count));
   }, []);
 
-  /** The pointer holds the tool from now on, or not. */
-  const hold = (isHeld: boolean) => {
-    if (!trainer || trainer.isHeld === isHeld) return;
-    trainer.isHeld = isHeld;
-    setTick((t) => t + 1);
-  };
   const move = (event: PointerEvent) => {
     if (phase !== "running" || !trainer || trainer.awaited) return;
     // While the view is turned the tool stays, and does not follow afterwards.
@@ -234,8 +228,9 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
   const press = (event: PointerEvent) => {
     // What holds the mouse needs no looking around, and a locked pointer cannot be captured for it.
     if (phase === "running" && !trainer?.awaited && event.pointerType === "mouse" && (event.button === 0 || document.pointerLockElement)) event.stopImmediatePropagation();
-    if (phase !== "running" || trainer?.awaited || event.button !== 0) return;
-    hold(true); // wherever it is
+    if (phase !== "running" || !trainer || trainer.awaited || event.button !== 0) return;
+    trainer.isHeld = true; // wherever it is
+    setTick((t) => t + 1);
     if (event.pointerType === "mouse") void Promise.resolve(canvas.current?.requestPointerLock?.()).catch(() => {});
   };
 
@@ -467,7 +462,7 @@ function Ended({ connection, listing, scenes, sceneKey, ended, expert, onExpert,
             ["recorded as", path || "not recorded"],
             ["duration", seconds(ended.ticks * (ended.tick_s ?? 1e-3), 1)],
             ["largest force", newtons(ended.max_force_n ?? 0)],
-            ["deepest dent", millimetres(ended.max_depth_m ?? 0, 2)],
+            ["largest depth", ended.max_depth_m ? millimetres(ended.max_depth_m, 2) : "–", "Of a ball; how deep a cut is the comparison says"],
             ["severed", `${ended.severed} elements`],
             ["late steps", String(ended.late_ticks)],
             ["behind the clock", behind(ended.slip_s ?? 0, ended.slip_max_s ?? 0)],

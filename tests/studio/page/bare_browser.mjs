@@ -5,6 +5,7 @@ import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { setTimeout as rest } from "node:timers/promises";
 import { kFlags } from "./browser.mjs";
 
 const kAskAgain = 50; // whether something is so in the page [ms]: to be asked is work for it
@@ -16,10 +17,10 @@ export async function openBareBrowser(script) {
   const browser = spawn("/usr/bin/chromium", [...kFlags, "--headless", "--hide-scrollbars", `--user-data-dir=${profile}`,
     "--remote-debugging-pipe", "about:blank"], { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
   const waiting = new Map();
-  let count = 0, rest = "", session;
+  let count = 0, session, begun = ""; // a message that is not whole yet
   browser.stdio[kTo].setEncoding("utf8").on("data", (data) => {
-    const messages = (rest + data).split("\0");
-    rest = messages.pop();
+    const messages = (begun + data).split("\0");
+    begun = messages.pop();
     for (const message of messages.map((text) => JSON.parse(text))) {
       const done = waiting.get(message.id);
       waiting.delete(message.id);
@@ -47,7 +48,7 @@ export async function openBareBrowser(script) {
   };
   /** Waits until a function of the page, asked between two of its tasks, returns something true; returns that. */
   const until = async (is, ...of) => {
-    for (;; await new Promise((resolve) => setTimeout(resolve, kAskAgain))) {
+    for (;; await rest(kAskAgain)) {
       const value = await evaluate(is, ...of).catch(() => null); // the document may be about to go
       if (value) return value;
     }

@@ -7,8 +7,9 @@
 // known to 1 ms.
 import { rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
+import { setTimeout as rest } from "node:timers/promises";
 import { openBareBrowser } from "./bare_browser.mjs";
-import { ctpm, ended, makeFolder, serve } from "./browser.mjs";
+import { ctpm, makeFolder, serve, stop } from "./browser.mjs";
 import { largeMesh } from "./large_mesh.mjs";
 
 const kSeconds = 8, rounds = Number(process.argv[7] ?? 3);
@@ -57,8 +58,6 @@ async function fromTicks() {
   return [0.5, 0.95].map((share) => times[Math.floor(share * (times.length - 1))].toFixed(0));
 }
 
-const rest = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
-
 async function lead(scene) {
   await page.click("header nav button", "Train");
   await page.find("aside input");
@@ -90,7 +89,5 @@ async function lead(scene) {
 
 for (let round = 0; round < rounds; ++round) for (const scene of ["kidney", "egg"]) await lead(scene);
 await page.close();
-const end = ended(server);
-server.kill("SIGINT");
-await end;
+await stop(server);
 rmSync(folder, { recursive: true });

@@ -78,8 +78,15 @@ export async function serve(folder, port, more = []) {
   return { server, address: await new Promise((resolve) => server.stdout.once("data", (data) => resolve(String(data).trim()))) };
 }
 
-export function ended(server) {
+function ended(server) {
   return new Promise((resolve) => server.once("exit", resolve));
+}
+
+/** Ends it as a user does; its exit code. */
+export function stop(server) {
+  const end = ended(server);
+  server.kill("SIGINT");
+  return end;
 }
 
 /** Opens a browser with an empty page; what goes wrong in it is added to `complaints`. */
@@ -147,9 +154,7 @@ export async function openStudio(folder, port = 0, ...more) {
   await page.waitForSelector("header nav button");
   const close = async () => {
     await closeBrowser();
-    const end = ended(server);
-    server.kill("SIGINT");
-    return end;
+    return stop(server);
   };
   /** Kills the server as a crash would. */
   const kill = async () => {
@@ -195,12 +200,17 @@ export async function moveMouse(page, from, by, steps) {
   }
 }
 
+/** The place of the ring around a tool that can be taken up, once it is there [px]. */
+export async function ringOf(page) {
+  const ring = await page.waitForSelector(".take-up");
+  return ring.evaluate((element) => (({ x, y, width, height }) => ({ x: x + width / 2, y: y + height / 2 }))(element.getBoundingClientRect()));
+}
+
 /** Brings the pointer to the tool of a training, which is taken up there; returns that place [px]. */
 export async function takeUp(page) {
   const box = await page.locator(".view > canvas").boundingBox();
   await page.mouse.move(box.x + 4, box.y + box.height - 4);
-  const ring = await page.waitForSelector(".take-up");
-  const at = await ring.evaluate((element) => (({ x, y, width, height }) => ({ x: x + width / 2, y: y + height / 2 }))(element.getBoundingClientRect()));
+  const at = await ringOf(page);
   await page.mouse.move(at.x, at.y);
   await page.waitForSelector(".view.held");
   return at;

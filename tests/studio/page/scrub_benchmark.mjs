@@ -6,8 +6,9 @@
 // that begins anew, and one and both are opened by a link, which has the browser begin the page first.
 import { cpSync, existsSync, mkdirSync, rmSync } from "node:fs";
 import { join } from "node:path";
+import { setTimeout as rest } from "node:timers/promises";
 import { openBareBrowser } from "./bare_browser.mjs";
-import { ended, makeFolder, serve } from "./browser.mjs";
+import { makeFolder, serve, stop } from "./browser.mjs";
 import { recordLong } from "./long_session.mjs";
 
 const kPressed = 560; // of a session, beside its cuts [s]
@@ -61,7 +62,6 @@ const { server, address } = await serve(served, 0), page = await openBareBrowser
 await page.go(address);
 await page.find("header nav button");
 
-const rest = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const { origin } = new URL(address);
 
 /** When the browser is done with a picture of `count` stages, on the clock of this machine [ms]. */
@@ -122,7 +122,5 @@ await open(expert, clumsy);
 await scrub("two sessions, just opened");
 await scrub("two sessions, later");
 await page.close();
-const end = ended(server);
-server.kill("SIGINT");
-await end;
+await stop(server);
 rmSync(folder, { recursive: true });

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
-import { ctpm, ctpmBeside, leave, makeFolder, moveMouse, openStudio, outOfReach, overflow, paths, picture, pixelsOf, reading, seenFirst, seriousFindings, step, takeUp, until } from "./browser.mjs";
+import { ctpm, ctpmBeside, leave, makeFolder, moveMouse, openStudio, outOfReach, overflow, paths, picture, pixelsOf, reading, ringOf, seenFirst, seriousFindings, step, takeUp, until } from "./browser.mjs";
 import { begin, end, handAxes, takeUpByKeys, untilFelt } from "./trainee_page.mjs";
 import { dot, minus } from "./vectors.mjs";
 
@@ -294,11 +294,10 @@ step("the mouse presses, cuts and records", async () => {
   assert.ok(depth > 1 && depth < 60, `${depth} mm`);
   // The tool stays in the wound while the pointer goes to a button, over it too; by a key, or where the picture held it.
   const place = await studio.handAtRest(), at = { x: middle.x + 160, y: middle.y + 240 };
-  const ring = () => page.locator(".take-up").evaluate((one) => (({ x, y, width, height }) => ({ x: x + width / 2, y: y + height / 2 }))(one.getBoundingClientRect()));
   const stays = async () => assert.ok(Math.hypot(...minus(await studio.handAtRest(), place)) < 1e-6);
   await page.keyboard.press(" ");
   await page.waitForSelector(".view.running:not(.held)");
-  const tool = await ring();
+  const tool = await ringOf(page);
   await moveMouse(page, at, { x: tool.x - at.x, y: tool.y - at.y }, 8);
   await moveMouse(page, tool, { x: 60, y: -60 }, 6);
   await stays();
