@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <map>
 
+#include "core/contact/drawn_dent.h"
 #include "core/contact/facet_press.h"
+#include "core/surface/stretch.h"
 #include "core/surface/surface.h"
 
 namespace ctpm::contact {
@@ -42,6 +43,8 @@ DrawnSurfaces::DrawnSurfaces(const Model& model)
 
 void DrawnSurfaces::place(std::size_t organ, const Surface& surface, const State& state, std::vector<Vec3>& vertex) {
   surface::deform_surface(surface, state.position, model_.organs[organ].first, vertex);
+  if (!is_whole(surface, model_.surfaces[organ]))
+    surface::spread_stretch(surface, model_.organs[organ].spacing, vertex);
   put_between_organs(organ, surface, state, vertex);
   for (std::size_t hand = 0; hand < kMostHands; ++hand) put_on_ball(hand, organ, surface, state, vertex);
   for (const surface::ObstacleShape& obstacle : obstacles_)
@@ -95,22 +98,7 @@ void DrawnSurfaces::put_on_ball(std::size_t hand, std::size_t organ, const Surfa
   } else if (std::any_of(state.touched.begin(), state.touched.end(), is_of_organ)) {
     for (std::size_t v = 0; v < vertex.size(); ++v) is_touched[v] = norm(vertex[v] - inputs.position) < tool.radius;
   }
-  // Normals of the touched vertices: sums over their triangles, weighted by area.
-  std::vector<Vec3> normal(vertex.size());
-  for (const auto& t : surface.triangle) {
-    const auto a = std::size_t(t[0]), b = std::size_t(t[1]), c = std::size_t(t[2]);
-    if (!is_touched[a] && !is_touched[b] && !is_touched[c]) continue;
-    const Vec3 n = cross(vertex[b] - vertex[a], vertex[c] - vertex[a]);
-    normal[a] += n, normal[b] += n, normal[c] += n;
-  }
-  for (std::size_t v = 0; v < vertex.size(); ++v) {
-    const double size = norm(normal[v]);
-    if (!is_touched[v] || !(size > 0)) continue;
-    // Inwards to the far side of the ball, as BallContact measures the dent.
-    const Vec3 apart = vertex[v] - inputs.position, outward = normal[v] / size;
-    const double height = dot(apart, outward), chord = height * height - dot(apart, apart) + tool.radius * tool.radius;
-    if (chord > 0) vertex[v] -= std::max(0.0, height + std::sqrt(chord)) * outward;
-  }
+  draw_dent(surface, inputs.position, tool.radius, is_touched, vertex);
 }
 
 }  // namespace ctpm::contact

@@ -16,7 +16,8 @@ namespace ctpm::contact {
 
 /// Where the surfaces of organs are seen and touched: where the lattice carries them, but dented by what presses them.
 /// A ball's dent lies on the ball, an obstacle's on the obstacle. Two organs dent each other, each by the share of the
-/// overlap that its stiffness gives it, so that their surfaces meet between.
+/// overlap that its stiffness gives it, so that their surfaces meet between. A cut surface spreads what stretch no
+/// element carries (surface::spread_stretch()).
 class DrawnSurfaces {
  public:
   /// `model` must outlive this.

@@ -179,8 +179,9 @@ struct StrokesResult {
     int severed = 0, refused = 0;  ///< elements; ticks
     int looks = 0;
     int wrong = 0;  ///< looks at which the drawn surface was open, or had other components than there were pieces
-    int changed_uncut = 0;  ///< looks at which it was another one, but nothing had been swept since the last look
-    double stretch = 0;     ///< of a triangle's longest edge, over that at rest: the largest of all looks
+    int changed_uncut = 0;       ///< looks at which it was another one, but nothing had been swept since the last look
+    double stretch = 0;          ///< of a triangle's longest edge, over that at rest: the largest of all looks
+    double carried_stretch = 0;  ///< the same where the spheres carry it, before what is drawn spreads the stretch
     /// Triangles of all looks that were stretched more than six times: without elements under them that are stretched
     /// half as much, and with such.
     int stretched = 0, pulled = 0;

@@ -81,6 +81,54 @@ TEST_P(SurfaceContact, DrawsTheSurfaceOnTheBall) {
   EXPECT_GT(deepest, -1e-3) << "but it is seen to touch";
 }
 
+/// Places of the drawn surface under a ball so far in [m], and where the lattice carries them.
+struct Dent {
+  Vec3 centre;
+  std::vector<Vec3> carried, drawn;
+};
+
+Dent dent(Integrator integrator, double radius, double depth) {
+  const Model model = pressed_block(integrator, radius);
+  stepping::Stepper stepper(model);
+  State state = rest_state(model);
+  for (double way = 0; way <= depth; way += 1e-4)
+    EXPECT_EQ(stepper.step(state, at({0.002, 0.001, kTop + radius - way})).status, stepping::StepStatus::ok);
+  Dent dent{state.last_inputs.position, {}, {}};
+  surface::deform_surface(model.surfaces[0], state.position, 0, dent.carried);
+  contact::DrawnSurfaces(model).place(0, model.surfaces[0], state, dent.drawn);
+  return dent;
+}
+
+TEST_P(SurfaceContact, DrawsAFunnelAroundABallThatIsInDeeperThanItsMiddle) {
+  const double radius = 0.004;
+  const Dent deep = dent(GetParam(), radius, 2.5 * radius);
+  int in_shaft = 0, around = 0;
+  for (std::size_t v = 0; v < deep.drawn.size(); ++v) {
+    const Vec3 carried = deep.carried[v] - deep.centre, drawn = deep.drawn[v] - deep.centre;
+    if (carried.z < -2 * radius) {
+      EXPECT_EQ(deep.drawn[v], deep.carried[v]) << "the far side";
+      continue;
+    }
+    const double from_axis = std::hypot(drawn.x, drawn.y);
+    in_shaft += carried.z > 0 && std::hypot(carried.x, carried.y) < radius;
+    around += carried.z > 0.1 * radius && from_axis > radius && from_axis < 1.5 * radius;
+    if (from_axis < 1.5 * radius) EXPECT_LT(drawn.z, std::max(0.0, from_axis - radius) + 0.05 * radius) << v;
+  }
+  EXPECT_GT(in_shaft, 2) << "the lattice alone leaves tissue over the ball";
+  EXPECT_GT(around, 2);
+}
+
+TEST_P(SurfaceContact, LeavesWhatIsBesideAShallowDentAsItIsCarried) {
+  const double radius = 0.01;
+  const Dent shallow = dent(GetParam(), radius, 0.2 * radius);
+  int moved = 0;
+  for (std::size_t v = 0; v < shallow.drawn.size(); ++v) {
+    if (norm(shallow.carried[v] - shallow.centre) > radius) EXPECT_EQ(shallow.drawn[v], shallow.carried[v]) << v;
+    moved += shallow.drawn[v] != shallow.carried[v];
+  }
+  EXPECT_GT(moved, 3);
+}
+
 TEST_P(SurfaceContact, OfASmallBallGoesDeeperThanTheLatticeFollows) {
   // A ball of a sixth of the spacing, eight of its radii deep... four: the force grows and never turns round.
   const double radius = 0.002;
