@@ -50,7 +50,12 @@ std::string ended_text(const std::string& shown, const Result<session::RecordOut
     json.member("began_s", began)
         .member("tick_s", tick)
         .member("ticks", outcome->run.ticks)
-        .member("late_ticks", outcome->run.late_ticks)
+        .member("late_ticks", outcome->run.late_ticks);
+    json.key("late_by").begin_object();
+    for (const recordings::LateCause cause : recordings::kLateCauses)
+      if (const std::int64_t count = outcome->run.late_by.of(cause); count > 0)
+        json.member(recordings::name_of(cause), count);
+    json.end_object()
         .member("slip_s", s.slip)
         .member("slip_max_s", s.slip_max)
         .member("fault", std::string_view(outcome->run.fault))

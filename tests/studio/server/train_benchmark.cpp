@@ -38,9 +38,14 @@ constexpr std::size_t kWithout = 0;  ///< late ticks may not rise against it
 constexpr double kMostRise = 1.05;
 
 /// What a run measured.
-enum Measure { late_share, tick_p50, tick_p99, wait_p50, wait_p99, way_p99, within, kMeasures };
-constexpr std::array kNames{"late ticks, % of all", "tick p50, ms",         "tick p99, ms",
-                            "pose to tick p50, ms", "pose to tick p99, ms", "of it until read p99, ms",
+enum Measure { late_share, late_by_us, tick_p50, tick_p99, wait_p50, wait_p99, way_p99, within, kMeasures };
+constexpr std::array kNames{"late ticks, % of all",
+                            "late ticks but the machine's, % of all",
+                            "tick p50, ms",
+                            "tick p99, ms",
+                            "pose to tick p50, ms",
+                            "pose to tick p99, ms",
+                            "of it until read p99, ms",
                             "poses within 5 ms, %"};
 using Run = std::array<double, kMeasures>;
 
@@ -80,8 +85,9 @@ std::optional<Run> run_alone(const recordings::SessionStart& start, const Vec3& 
     const auto outcome = session::record_session(start, *followed->source, unkept.file(), false, options);
     if (!outcome) return;
     const recordings::SessionStatistics& s = outcome->statistics;
-    run = Run{1e2 * double(outcome->run.late_ticks) / double(outcome->run.ticks), 1e3 * s.tick_time_p50,
-              1e3 * s.tick_time_p99};
+    const std::int64_t by_us = outcome->run.late_ticks - outcome->run.late_by.of(recordings::LateCause::machine);
+    run = Run{1e2 * double(outcome->run.late_ticks) / double(outcome->run.ticks),
+              1e2 * double(by_us) / double(outcome->run.ticks), 1e3 * s.tick_time_p50, 1e3 * s.tick_time_p99};
     for (const auto& [name, value] : s.values) {
       if (name == "device_pose_wait_p50_s") (*run)[wait_p50] = 1e3 * value;
       if (name == "device_pose_wait_p99_s") (*run)[wait_p99] = 1e3 * value;
@@ -113,13 +119,11 @@ std::optional<Run> ended(SocketClient& page) try {
     const auto message = page.receive();
     if (!message.is_text || message.bytes.find("train_ended") == std::string::npos) continue;
     const nlohmann::json end = nlohmann::json::parse(message.bytes)["content"];
-    return Run{1e2 * double(end["late_ticks"]) / double(end["ticks"]),
-               1e3 * double(end["tick_time_p50_s"]),
-               1e3 * double(end["tick_time_p99_s"]),
-               1e3 * double(end["pose_wait_p50_s"]),
-               1e3 * double(end["pose_wait_p99_s"]),
-               1e3 * double(end["pose_way_p99_s"]),
-               1e2 * double(end["poses_within_5ms"])};
+    const double late = end["late_ticks"], by_machine = end["late_by"].value("machine", 0.0);
+    return Run{1e2 * late / double(end["ticks"]),    1e2 * (late - by_machine) / double(end["ticks"]),
+               1e3 * double(end["tick_time_p50_s"]), 1e3 * double(end["tick_time_p99_s"]),
+               1e3 * double(end["pose_wait_p50_s"]), 1e3 * double(end["pose_wait_p99_s"]),
+               1e3 * double(end["pose_way_p99_s"]),  1e2 * double(end["poses_within_5ms"])};
   }
 } catch (const std::exception&) {
   return std::nullopt;
@@ -187,18 +191,18 @@ void print(const std::array<std::vector<Run>, kVariants.size()>& runs) {
   }
 }
 
-/// How many times as many late ticks there are with pages as without any, in all rounds together, and between which
-/// values that lies with 95 %: of rounds that are drawn again and again.
-void print_rise(const std::array<std::vector<Run>, kVariants.size()>& runs) {
+/// How many times as many late ticks, by a measure of them, there are with pages as without any, in all rounds
+/// together, and between which values that lies with 95 %: of rounds that are drawn again and again.
+void print_rise(const std::array<std::vector<Run>, kVariants.size()>& runs, Measure late) {
   constexpr int kDraws = 4000;
   const std::size_t rounds = runs[kWithout].size();
   std::mt19937 random(1);
-  std::printf("late ticks, times as many as without a studio; goal: %.2f at most\n", kMostRise);
+  std::printf("%s, times as many as without a studio; goal: %.2f at most\n", kNames[late], kMostRise);
   for (std::size_t v = 1; v < kVariants.size(); ++v) {
     const auto rise_of = [&](const std::function<std::size_t(std::size_t)>& round) {
       double with = 0, without = 0;
       for (std::size_t i = 0; i < rounds; ++i)
-        with += runs[v][round(i)][late_share], without += runs[kWithout][round(i)][late_share];
+        with += runs[v][round(i)][late], without += runs[kWithout][round(i)][late];
       return without > 0 ? with / without : with > 0 ? INFINITY : 1;
     };
     const double rise = rise_of([](std::size_t i) { return i; });
@@ -242,7 +246,9 @@ int benchmark_training(const std::string& folder, const std::string& scene, int 
       runs[v].push_back(*run);
     }
   std::printf("%s, %d rounds of %.0f s each\n", scene.c_str(), rounds, seconds);
-  print(runs), print_rise(runs);
+  print(runs);
+  // What the machine takes comes in bursts, with pages and without.
+  for (const Measure late : {late_share, late_by_us}) print_rise(runs, late);
   return 0;
 }
 

@@ -112,6 +112,9 @@ TEST_F(TrainingTest, TheEndSaysHowLongATickOfTheSceneIs) {
   EXPECT_EQ(ended["tick_s"], 0.002) << ended;
   EXPECT_EQ(info["tick_s"], 0.002);
   EXPECT_NEAR(ended["ticks"].get<double>() * ended["tick_s"].get<double>(), info["duration_s"].get<double>(), 1e-9);
+  std::int64_t late = 0;
+  for (const auto& [cause, count] : ended["late_by"].items()) late += count.get<std::int64_t>();
+  EXPECT_EQ(late, ended["late_ticks"].get<std::int64_t>()) << ended["late_by"];
 }
 
 TEST_F(TrainingTest, TwoHandsAreLedAndRecordedAndShown) {
