@@ -112,7 +112,9 @@ TEST_P(SurfaceContact, DrawsAFunnelAroundABallThatIsInDeeperThanItsMiddle) {
     const double from_axis = std::hypot(drawn.x, drawn.y);
     in_shaft += carried.z > 0 && std::hypot(carried.x, carried.y) < radius;
     around += carried.z > 0.1 * radius && from_axis > radius && from_axis < 1.5 * radius;
-    if (from_axis < 1.5 * radius) EXPECT_LT(drawn.z, std::max(0.0, from_axis - radius) + 0.05 * radius) << v;
+    if (from_axis < 1.5 * radius) {
+      EXPECT_LT(drawn.z, std::max(0.0, from_axis - radius) + 0.05 * radius) << v;
+    }
   }
   EXPECT_GT(in_shaft, 2) << "the lattice alone leaves tissue over the ball";
   EXPECT_GT(around, 2);
@@ -123,7 +125,9 @@ TEST_P(SurfaceContact, LeavesWhatIsBesideAShallowDentAsItIsCarried) {
   const Dent shallow = dent(GetParam(), radius, 0.2 * radius);
   int moved = 0;
   for (std::size_t v = 0; v < shallow.drawn.size(); ++v) {
-    if (norm(shallow.carried[v] - shallow.centre) > radius) EXPECT_EQ(shallow.drawn[v], shallow.carried[v]) << v;
+    if (norm(shallow.carried[v] - shallow.centre) > radius) {
+      EXPECT_EQ(shallow.drawn[v], shallow.carried[v]) << v;
+    }
     moved += shallow.drawn[v] != shallow.carried[v];
   }
   EXPECT_GT(moved, 3);

@@ -69,8 +69,9 @@ TEST(Stretch, ThatNoElementCarriesIsSpreadOverTheNeighbours) {
     surface::spread_stretch(surface, kSpacing, vertex);
     EXPECT_LT(most_stretch(surface, vertex), 1.01 * surface::kMostStretch) << spacings << " spacings";
     for (std::size_t v = 0; v < vertex.size(); ++v)
-      if (std::abs(surface.vertex[v].x - kLong / 2 * kCell) > 2.5 * kSpacing)
+      if (std::abs(surface.vertex[v].x - kLong / 2 * kCell) > 2.5 * kSpacing) {
         EXPECT_EQ(vertex[v], carried[v]) << "a place far away, " << v;
+      }
   }
 }
 
