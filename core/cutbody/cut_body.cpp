@@ -152,27 +152,36 @@ class CutBody::Rebuilding {
   void add_walls() {
     for (std::size_t t = mesh_.outer_triangles; t < mesh_.triangle.size(); ++t) {
       const Triangle& v = mesh_.triangle[t];
-      if (is_bubble_[std::size_t(v[0])] != 0) continue;
+      if (is_bubble_[t - mesh_.outer_triangles] != 0) continue;
       const Index a = wall(v[0]), b = wall(v[1]), c = wall(v[2]);
       body_.surface_.triangle.push_back({a, b, c});
     }
   }
 
  private:
-  /// Finds slits that are narrower than a spacing and reach no surface: the grid leaves them along the rim of a cut,
-  /// where that crosses single edges only. Crumbs of tissue have such surfaces, too, but are pieces.
+  /// Finds slits that are narrower than a spacing and reach no surface but in single points: the grid leaves them along
+  /// the rim of a cut, where that crosses single edges only. Crumbs of tissue have such surfaces, too, but are pieces.
   void find_bubbles() {
-    is_bubble_.assign(mesh_.vertex.size(), 0);
-    JoinedVertices joined;
-    for (std::size_t v = 0; v < mesh_.vertex.size(); ++v) joined.add();
-    for (const Triangle& t : mesh_.triangle) joined.join(t[0], t[1]), joined.join(t[1], t[2]);
-    std::map<Index, Box> inner;  // by their first vertices: what consists of walls
-    std::vector<std::uint8_t> has_outer(mesh_.vertex.size(), 0);
-    for (std::size_t v = 0; v < mesh_.vertex.size(); ++v)
-      if (is_outer_[v] != 0) has_outer[std::size_t(joined.root(Index(v)))] = 1;
-    for (std::size_t v = 0; v < mesh_.vertex.size(); ++v)
-      if (const Index root = joined.root(Index(v)); has_outer[std::size_t(root)] == 0 && is_wall_[v] != 0)
-        inner.try_emplace(root, mesh_.vertex[v].rest).first->second.add(mesh_.vertex[v].rest);
+    const std::size_t first = mesh_.outer_triangles, count = mesh_.triangle.size() - first;
+    is_bubble_.assign(count, 0);
+    DisjointSets joined;  // triangles of walls
+    for (std::size_t t = 0; t < count; ++t) joined.add();
+    std::vector<WallEdge> edges = edges_of_walls();
+    std::vector<Index> open;  // triangles at edges that no other one has: walls that end at the surface
+    for (std::size_t e = 0, next = 0; e < edges.size(); e = next) {
+      while (next < edges.size() && edges[next].ends == edges[e].ends)
+        joined.join(edges[e].triangle, edges[next++].triangle);
+      if (next == e + 1) open.push_back(edges[e].triangle);
+    }
+    std::vector<std::uint8_t> is_open(count, 0);
+    for (const Index t : open) is_open[std::size_t(joined.root(t))] = 1;
+    std::map<Index, Box> inner;  // by their first triangles: walls that are closed by themselves
+    for (std::size_t t = 0; t < count; ++t)
+      if (const Index root = joined.root(Index(t)); is_open[std::size_t(root)] == 0)
+        for (const Index v : mesh_.triangle[first + t]) {
+          const Vec3 rest = mesh_.vertex[std::size_t(v)].rest;
+          inner.try_emplace(root, rest).first->second.add(rest);
+        }
     std::erase_if(inner, [&](const auto& part) {
       const Vec3 size = part.second.high - part.second.low;
       const double width =
@@ -181,13 +190,31 @@ class CutBody::Rebuilding {
     });
     if (inner.empty()) return;
     const std::vector<Index> piece = grid_.find_pieces();
-    const auto piece_of = [&](Index v) { return piece[std::size_t(mesh_.vertex[std::size_t(v)].side)]; };
+    const auto piece_of = [&](std::size_t t) {
+      return piece[std::size_t(mesh_.vertex[std::size_t(mesh_.triangle[t][0])].side)];
+    };
     std::set<Index> shown;  // pieces that have another surface
-    for (std::size_t v = 0; v < mesh_.vertex.size(); ++v)
-      if (!inner.contains(joined.root(Index(v)))) shown.insert(piece_of(Index(v)));
-    std::erase_if(inner, [&](const auto& part) { return !shown.contains(piece_of(part.first)); });
-    for (std::size_t v = 0; v < mesh_.vertex.size(); ++v)
-      is_bubble_[v] = std::uint8_t(inner.contains(joined.root(Index(v))));
+    for (std::size_t t = 0; t < mesh_.triangle.size(); ++t)
+      if (t < first || !inner.contains(joined.root(Index(t - first)))) shown.insert(piece_of(t));
+    std::erase_if(inner, [&](const auto& part) { return !shown.contains(piece_of(first + std::size_t(part.first))); });
+    for (std::size_t t = 0; t < count; ++t) is_bubble_[t] = std::uint8_t(inner.contains(joined.root(Index(t))));
+  }
+
+  struct WallEdge {
+    std::array<Index, 2> ends;  ///< vertices, ascending
+    Index triangle;             ///< of the walls
+    friend auto operator<=>(const WallEdge&, const WallEdge&) = default;
+  };
+  /// Ascending by their ends.
+  std::vector<WallEdge> edges_of_walls() const {
+    std::vector<WallEdge> edges;
+    for (std::size_t t = mesh_.outer_triangles; t < mesh_.triangle.size(); ++t)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Index a = mesh_.triangle[t][c], b = mesh_.triangle[t][(c + 1) % 3];
+        edges.push_back({{std::min(a, b), std::max(a, b)}, Index(t - mesh_.outer_triangles)});
+      }
+    std::sort(edges.begin(), edges.end());
+    return edges;
   }
 
   Index count() const { return Index(body_.surface_.vertex.size()); }
@@ -237,8 +264,9 @@ class CutBody::Rebuilding {
   SideBinding::Writer writer_;
   std::vector<std::uint8_t> near_, meshed_;  ///< blocks around the cut, and around those
   CutMesh mesh_;
-  std::vector<Index> of_corner_, outer_, wall_;               ///< vertices of surface_ made so far, or -1
-  std::vector<std::uint8_t> is_outer_, is_wall_, is_bubble_;  ///< vertices of the mesh
+  std::vector<Index> of_corner_, outer_, wall_;   ///< vertices of surface_ made so far, or -1
+  std::vector<std::uint8_t> is_outer_, is_wall_;  ///< vertices of the mesh
+  std::vector<std::uint8_t> is_bubble_;           ///< triangles of its walls, see find_bubbles()
 };
 
 void CutBody::rebuild(const State& state) {

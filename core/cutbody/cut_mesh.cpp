@@ -384,7 +384,7 @@ void Mesher::Parts::tetrahedron(Index cube, const int* corners) {
 /// Numbers the vertices, leaves out walls whose two sides are one, and puts the outer triangles first.
 CutMesh Mesher::Parts::collect() {
   std::vector<Index> place(vertices_.count(), -1), at_place;  // in the order in which they were come across
-  JoinedVertices joined;
+  DisjointSets joined;
   for (const Index v : now_.vertex)
     if (place[std::size_t(v)] < 0) place[std::size_t(v)] = joined.add(), at_place.push_back(v);
   for (const auto& [a, b] : now_.joined) joined.join(place[std::size_t(a)], place[std::size_t(b)]);

@@ -57,8 +57,8 @@ class Vertices {
   std::vector<std::uint32_t> round_of_;  ///< in which their places were found
 };
 
-/// Which of the vertices of a mesh are the same: the first of them stands for all.
-class JoinedVertices {
+/// Which of numbered things, vertices or triangles of a mesh, belong together: the first of them stands for all.
+class DisjointSets {
  public:
   using Index = CutGrid::Index;
 
@@ -70,9 +70,9 @@ class JoinedVertices {
     a = root(a), b = root(b);
     root_[std::size_t(std::max(a, b))] = std::min(a, b);
   }
-  Index root(Index v) {
-    while (root_[std::size_t(v)] != v) v = root_[std::size_t(v)] = root_[std::size_t(root_[std::size_t(v)])];
-    return v;
+  Index root(Index i) {
+    while (root_[std::size_t(i)] != i) i = root_[std::size_t(i)] = root_[std::size_t(root_[std::size_t(i)])];
+    return i;
   }
 
  private:
