@@ -74,6 +74,79 @@ step("names in a scene are text", async () => {
   await page.click("header nav button:has-text('Train')");
 });
 
+step("beside the tool stands how far it is above the tissue, until it touches, and its shadow falls there", async () => {
+  await begin(page, "kidney");
+  await takeUpByKeys(page);
+  const canvas = page.locator(".view > canvas"), label = page.locator(".tool-label"), { right } = handAxes();
+  const above = async () => Number.parseFloat(/^([\d.]+) mm above$/.exec(await label.textContent())?.[1]);
+  const down = async (mm) => {
+    for (let i = 0; i < mm; ++i) await page.keyboard.press("ArrowDown");
+    return studio.handAtRest();
+  };
+  /** What stands there once the hand has come to rest, and pictures show it there. */
+  const rested = async () => {
+    const said = [await above()];
+    do await page.waitForTimeout(250), said.push(await above());
+    while (said.length < 40 && said.slice(-3).some((mm) => mm !== said.at(-1)));
+    return said.at(-1);
+  };
+  const start = await down(0), far = await rested();
+  await down(5);
+  const nearer = await rested();
+  assert.ok(Math.abs(nearer - (far - 5)) < 0.35, `${far} mm, and 5 mm lower ${nearer} mm`);
+  assert.equal((await page.locator(".readings div:has(dt:text-is('to the tissue')) dd").innerText()).replace(/[\d.]+/, ""), " mm above");
+  const shadowed = await canvas.screenshot();
+  await picture(page, "train-above");
+  // Aside, where there is no tissue, and back.
+  const aside = Math.round(1e3 * (0.06 + Math.abs(dot(start, right))));
+  for (let i = 0; i < aside; ++i) await page.keyboard.press("ArrowLeft");
+  await page.waitForFunction(() => document.querySelector(".tool-label").textContent === "no tissue below");
+  await picture(page, "train-beside");
+  /** How many pixels of the tissue are otherwise without a tool above it: white, which is the ring, and darker, which is the shadow. */
+  const unshadowed = pixelsOf(await canvas.screenshot()).data, cast = (png) => {
+    const { data } = pixelsOf(png), count = { ring: 0, shadow: 0 };
+    for (let i = 0; i < data.length; i += 4) {
+      const [red, green, blue] = data.subarray(i, i + 3), was = unshadowed[i];
+      if (was < 60 || unshadowed[i + 1] > 60 || unshadowed[i + 2] > 60) continue;
+      count.ring += Number(Math.min(red, green, blue) > 120), count.shadow += Number(red < 0.7 * was && red > 2 * green);
+    }
+    return count;
+  };
+  const { ring, shadow } = cast(shadowed);
+  assert.ok(ring > 100 && shadow > 100, `${ring} pixels of a ring, ${shadow} of a shadow`);
+  for (let i = 0; i < aside; ++i) await page.keyboard.press("ArrowRight");
+  assert.ok(Math.abs((await rested()) - nearer) < 0.35, "and back over the same place");
+  // Down to where it touches: by as much as was said, within how round the tissue's spheres are.
+  let low = await studio.handAtRest();
+  while ((await reading(page, "touched")) === 0 && start[2] - low[2] < 0.05) low = await down(1), await page.waitForTimeout(250);
+  const went = 1e3 * (start[2] - low[2]);
+  console.log(`training: ${far} mm above the tissue, and it touched after ${went.toFixed(1)} mm`);
+  assert.ok(Math.abs(went - far) < 2.5, `${far} mm were said, and it touched after ${went} mm`);
+  await page.waitForSelector(".tool-label.gone", { state: "attached" });
+  assert.equal(await page.locator(".readings div:has(dt:text-is('to the tissue')) dd").innerText(), "touches it");
+  const left = cast(await canvas.screenshot()).shadow;
+  assert.ok(left < shadow / 4, `${left} pixels of a shadow of ${shadow} are left`);
+  await end(page);
+  await page.click("button:has-text('Choose a scene')");
+});
+
+step("a session that falls behind the clock says so in the picture, and what helps, until it keeps up", async () => {
+  await begin(page, "kidney");
+  await takeUpByKeys(page);
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 0.2);
+  assert.match(await page.locator(".of-machine summary").innerText(), /^The machine: /);
+  const said = page.locator(".view .slow-motion");
+  await studio.starve(3000);
+  await said.waitFor();
+  assert.match(await said.innerText(), /^This machine is too slow for what happens here: [1-9]\d* s behind the clock\s+The tissue moves at \d+ % of its pace.*close other programs/s);
+  await picture(page, "train-slow-motion");
+  assert.deepEqual(await seriousFindings(page), []);
+  await said.waitFor({ state: "detached" });
+  assert.ok((await reading(page, "behind the clock")) > 2, "what was lost stays lost");
+  await end(page);
+  await page.click("button:has-text('Choose a scene')");
+});
+
 step("the wheel moves the tool away from the viewer, and the pointer slows as the tissue resists", async () => {
   const { eye, right, up, deep } = handAxes();
   await begin(page, "kidney", "wheel.ctpm");
@@ -287,7 +360,7 @@ step("the mouse presses, cuts and records", async () => {
   assert.ok(asked > 10 && came >= asked - 2 && came <= asked + others, `${asked} pictures asked for, ${came} came`);
   await picture(page, "train-cut");
   await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /99 of 100 stepsunder \d/.test(d.textContent)));
-  const ticks = await page.locator(".readings div:has(dt:text-is('99 of 100 steps')) dd").innerText();
+  const ticks = await page.locator(".readings div:has(dt:text-is('99 of 100 steps')) dd").textContent();
   console.log(`training: ${await reading(page, "late steps")} late ticks, 99 of 100 ticks ${ticks}, while a browser draws on the same processors`);
   const behind = await reading(page, "behind the clock"), newest = await reading(page, "newest step");
   const depth = await reading(page, "depth"); // of the blade, along it
@@ -311,7 +384,7 @@ step("the mouse presses, cuts and records", async () => {
   await stays();
   assert.ok(behind >= 0 && newest > 0 && Number(/under ([\d.]+) ms/.exec(ticks)[1]) > 0, `${behind} s behind, tick of ${newest} ms, ${ticks}`);
   await end(page);
-  assert.match(await page.locator(".readings div:has(dt:text-is('behind the clock')) dd").first().innerText(), /never|at most/);
+  assert.match(await page.locator(".readings div:has(dt:text-is('behind the clock')) dd").first().textContent(), /never|at most/);
 });
 
 step("the session verifies to the bit, and is compared at once", async () => {
