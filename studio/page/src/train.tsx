@@ -5,6 +5,8 @@ import { deviceParameters, deviceWords, storedDevice, storeDevice } from "./devi
 import { Ended } from "./ended";
 import { ExpertChoice, proposedExpert } from "./expert_choice";
 import { useHand } from "./hand_events";
+import { endOf, forgetTraining, keepTraining, lastTraining } from "./last_training";
+import type { Recording } from "./leaving";
 import { forceLimit, forceOf, OverPicture, placeMarks, useMarks } from "./over_picture";
 import { Empty, Problems, Readings, Section, ShownCommand, useRedraw } from "./parts";
 import type { Place } from "./place";
@@ -30,7 +32,7 @@ function freeName({ sessions }: Listing, name: string): string {
   for (let i = 1, free = name; ; free = `${stem}-${++i}.ctpm`) if (!taken.has(free)) return free;
 }
 
-export function Train({ connection, listing, tryScene, tryText, tryView, onReview, onAuthor, onChanged }: {
+export function Train({ connection, listing, tryScene, tryText, tryView, onReview, onAuthor, onChanged, onRecording }: {
   connection: Connection;
   listing: Listing;
   tryScene: string | undefined; // at once, and nothing is recorded
@@ -39,17 +41,19 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
   onReview: (place: Place) => void;
   onAuthor: () => void; // back to the scene that was tried
   onChanged: () => void;
+  onRecording: (recording: Recording | null) => void; // which leaving the room would end
 }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const [trainer, setTrainer] = useState<Trainer | null>(null);
-  const [phase, setPhase] = useState<Phase>("choose");
-  const [scene, setScene] = useState("");
-  const [chosenName, setChosenName] = useState<string | null>(tryScene ? "" : null); // null: the page's; empty: nothing is recorded
-  const [output, setOutput] = useState(""); // the session that is recorded; empty: none
-  const [sceneKey, setSceneKey] = useState(""); // of the scene of the session that runs or has ended; empty: not known
+  const [last] = useState(() => (tryScene ? null : lastTraining(listing.folder))); // to which somebody comes back
+  const [phase, setPhase] = useState<Phase>(last ? "ended" : "choose");
+  const [scene, setScene] = useState(last?.scene ?? "");
+  const [chosenName, setChosenName] = useState<string | null>(last ? last.chosenName : tryScene ? "" : null); // null: the page's; empty: nothing is recorded
+  const [output, setOutput] = useState(last?.output ?? ""); // the session that is recorded; empty: none
+  const [sceneKey, setSceneKey] = useState(last?.sceneKey ?? ""); // of the scene of the session that runs or has ended; empty: not known
   const [scenes, setScenes] = useState<SceneOfSession[]>([]); // of the sessions, once they are known
-  const [chosenExpert, setChosenExpert] = useState<string | null>(null); // null: the page's proposal for what is recorded; empty: none
-  const [device, setDevice] = useState(storedDevice), [waits, setWaits] = useState(""), [note, setNote] = useState("");
+  const [chosenExpert, setChosenExpert] = useState(last?.chosenExpert ?? null); // null: the page's proposal for what is recorded; empty: none
+  const [device, setDevice] = useState(last?.device ?? storedDevice), [waits, setWaits] = useState(""), [note, setNote] = useState("");
   const [ended, setEnded] = useState<EndedTraining | null>(null);
   const [error, setError] = useState<Error | null>(null);
   const redraw = useRedraw(), marks = useMarks();
@@ -128,10 +132,36 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
   const { isTouch, onPointerDown, onPointerLeave } = useHand({ trainer, isRunning: phase === "running", canvas, redraw }, sound.current);
 
   const choose = () => {
+    forgetTraining();
     trainer?.clear();
     setChosenName(tryScene ? null : chosenName && freeName(listing, chosenName));
     setPhase("choose"), setEnded(null), setSceneKey("");
   };
+
+  // A scene as its author has it now may be another one when somebody comes back.
+  const isKept = (phase === "running" || phase === "ended") && (output !== "" || scene !== tryScene);
+  useEffect(() => {
+    if (isKept) keepTraining({ folder: listing.folder, scene, output, sceneKey, chosenName, chosenExpert, device, ended });
+  }, [isKept, phase, output, sceneKey, chosenExpert, ended]);
+  useEffect(() => {
+    if (!last || phase !== "ended" || ended) return;
+    let isWanted = true;
+    endOf(connection, last).then((end) => isWanted && setEnded(end), () => isWanted && choose());
+    return () => void (isWanted = false);
+  }, [connection, phase, ended]);
+
+  const recorded = phase === "running" && trainer?.scene?.frame?.tick ? output : "";
+  useEffect(() => {
+    if (!recorded || !trainer) return;
+    const ask = (event: BeforeUnloadEvent) => event.preventDefault();
+    onRecording({ name: recorded, end: () => trainer.end(), resume: () => canvas.current?.focus() });
+    addEventListener("beforeunload", ask);
+    return () => {
+      onRecording(null);
+      removeEventListener("beforeunload", ask);
+    };
+  }, [recorded, trainer]);
+
   const view = trainer?.scene?.view ?? null;
   sound.current.sound(forceOf(trainer) / forceLimit(view));
 
@@ -161,6 +191,11 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
         {phase === "loading" && (
           <Empty title={`Loading ${scene}`}>
             <p>Its organs are filled with spheres and settle under gravity.</p>
+          </Empty>
+        )}
+        {phase === "ended" && !view && (
+          <Empty title={output ? `${output} has ended` : "The training has ended"}>
+            <p>What can be done with it is beside the picture; or choose another scene.</p>
           </Empty>
         )}
         {phase === "running" && trainer && <OverPicture trainer={trainer} marks={marks} isTouch={isTouch} waits={waits} />}

@@ -121,7 +121,7 @@ export async function openStudio(folder, port = 0, ...more) {
   const { page, complaints, close: closeBrowser } = await openBrowser({
     ignoreHTTPSErrors: more.includes("--behind"), // a certificate of the test's own
   });
-  page.on("dialog", (dialog) => complaints.push(`dialog: ${dialog.message()}`));
+  page.on("dialog", (dialog) => dialog.type() !== "beforeunload" && complaints.push(`dialog: ${dialog.message()}`));
   let cameAt = Date.now(); // the newest message of the program
   const live = { ready: 0, frames: 0 }; // of a training: how often the page asked for a picture, and how many came
   let sent = null, count = 0, rested = 0; // the hand that the page sent last, of how many, and how many of them were where it is

@@ -231,6 +231,7 @@ step("a recording is there up to the moment when the program was killed", async 
   await other.goto(await studio.startAgain());
   await page.waitForSelector(".list button:has-text('kidney')"); // the page goes on
   await other.close();
+  await page.waitForSelector("aside .warning:has-text('killed.ctpm has no clean end')");
   studio.complaints.splice(complaints); // that nothing answered
   const recovered = ctpm(folder, "recover", "killed.ctpm", "-o", "recovered.ctpm");
   assert.equal(recovered.code, 3, recovered.out + recovered.err); // the end was lost
@@ -240,7 +241,7 @@ step("a recording is there up to the moment when the program was killed", async 
 });
 
 step("on a tablet one finger moves the tool, two look around, and buttons do what keys do", async () => {
-  await page.click("header nav button:has-text('Train')");
+  await page.click("button:has-text('Choose a scene')");
   await page.setViewportSize({ width: 820, height: 1180 });
   const input = await page.context().newCDPSession(page);
   await input.send("Emulation.setTouchEmulationEnabled", { enabled: true, maxTouchPoints: 5 });

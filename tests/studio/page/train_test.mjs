@@ -72,6 +72,7 @@ step("names in a scene are text", async () => {
   assert.equal(await page.locator(".objects button:has-text('<img src=x onerror=alert(1)>')").count(), 1);
   assert.equal(await page.locator("main img, main b[onclick]").count(), 0);
   await page.click("header nav button:has-text('Train')");
+  await page.click("button:has-text('Choose a scene')");
 });
 
 step("beside the tool stands how far it is above the tissue, until it touches, and its shadow falls there", async () => {
@@ -145,6 +146,66 @@ step("a session that falls behind the clock says so in the picture, and what hel
   assert.ok((await reading(page, "behind the clock")) > 2, "what was lost stays lost");
   await end(page);
   await page.click("button:has-text('Choose a scene')");
+});
+
+step("leaving the room, or the page, asks before it ends a recording, which is there when somebody comes back", async () => {
+  const question = page.locator("dialog"), room = () => page.evaluate(() => new URLSearchParams(location.hash.slice(1)).get("room"));
+  const goOnRecording = async () => {
+    await takeUpByKeys(page);
+    await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 0.3);
+  };
+  await begin(page, "kidney", "left.ctpm");
+  await page.locator("aside .field:has-text('expert') select").selectOption(kOther);
+  await page.click("header nav button:has-text('Review')"); // nothing is recorded yet
+  await page.waitForSelector(".room.review");
+  await page.click("header nav button:has-text('Train')");
+  await page.waitForSelector(".view .empty:has-text('Choose a scene to train in')");
+  await begin(page, "kidney", "left.ctpm");
+  await page.locator("aside .field:has-text('expert') select").selectOption(kOther);
+  await goOnRecording();
+  await page.click("header nav button:has-text('Review')");
+  await question.waitFor();
+  assert.match(await question.innerText(), /Leaving this room ends the recording here\. It is kept as left\.ctpm/);
+  assert.deepEqual(await seriousFindings(page), []);
+  await picture(page, "train-leaving");
+  const before = await page.locator(".clock").innerText();
+  await page.click("dialog button:has-text('Go on training')");
+  await question.waitFor({ state: "detached" });
+  await page.waitForFunction((before) => document.querySelector(".clock").textContent !== before, before);
+  // The browser's way back asks too.
+  await page.evaluate(() => history.back());
+  await question.waitFor();
+  assert.equal(await room(), "train");
+  await page.click("dialog button:has-text('End the recording and leave')");
+  await page.waitForSelector(".room.review");
+  assert.equal(await room(), "review");
+  const info = () => JSON.parse(ctpm(folder, "info", "left.ctpm", "--json").out);
+  assert.ok(info().ended_cleanly && info().duration_s > 0.3);
+  await page.click("header nav button:has-text('Train')");
+  const ended = async (session) => {
+    await page.waitForSelector("aside .readings dt:text-is('recorded as')");
+    assert.equal(await page.locator(".readings div:has(dt:text-is('recorded as')) dd").innerText(), session);
+    assert.match(await page.locator("aside button.main").innerText(), /^Verify/);
+    assert.equal(await page.locator("aside .field:has-text('expert') select").inputValue(), kOther);
+  };
+  await ended("left.ctpm");
+  await picture(page, "train-come-back");
+  await page.click("button:has-text('Train again')");
+  await page.waitForSelector(".view.running");
+  assert.equal((await page.locator(".recorded").textContent()).trim(), "records left-2.ctpm");
+  await goOnRecording();
+  const asked = new Promise((resolve) => page.once("dialog", (dialog) => (resolve(dialog.type()), void dialog.accept())));
+  await page.reload();
+  assert.equal(await asked, "beforeunload");
+  await ended("left-2.ctpm");
+  assert.ok((await reading(page, "duration")) > 0.2);
+  await page.click("button.main:has-text('Verify')");
+  assert.match(await page.locator("aside .good").first().innerText(), /^The recording, replayed: same/);
+  await page.click("button:has-text('Choose a scene')");
+  // Who has chosen another scene does not come back to it, nor is a page asked that records nothing.
+  await page.reload();
+  await page.waitForSelector(".view .empty:has-text('Choose a scene to train in')");
+  for (const name of ["left.ctpm", "left-2.ctpm"]) rmSync(join(folder, name));
 });
 
 step("the wheel moves the tool away from the viewer, and the pointer slows as the tissue resists", async () => {
@@ -446,6 +507,8 @@ const groups = () => page.locator("aside .field:has-text('expert') optgroup").ev
 
 step("an expert's session of another scene is said to be one, in a training and after it", async () => {
   await page.click("header nav button:has-text('Train')");
+  await page.waitForSelector("aside button.main:text-is('Verify and compare')"); // of mine.ctpm, still
+  await page.click("button:has-text('Choose a scene')");
   const choice = page.locator("aside .field:has-text('expert') select"), warning = page.locator("aside .warning:has-text('of another scene')");
   await choice.selectOption(kOther);
   await begin(page, "kidney", "other.ctpm");
@@ -468,6 +531,7 @@ step("an expert's session of another scene is said to be one, in a training and 
 });
 
 step("the first expert's session of the scene is proposed for what is recorded, and for nothing else", async () => {
+  await page.click("button:has-text('Choose a scene')");
   await page.click("header nav button:has-text('Review')");
   await page.click("header nav button:has-text('Train')");
   const chosen = () => page.locator("aside .field:has-text('expert') select").inputValue();
