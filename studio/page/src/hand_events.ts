@@ -6,14 +6,14 @@ import type { Trainer } from "./trainer";
 
 type Leading = { trainer: Trainer | null; isRunning: boolean; canvas: RefObject<HTMLCanvasElement>; redraw: () => void };
 
-const kNoKeysOfTools = "input, textarea, select, dialog";
+const kTakesKeys = "input, textarea, select, dialog"; // itself
 
 /** Keys lead the tool wherever the focus is, but for fields and questions. */
 function useKeys({ trainer, isRunning, redraw }: Leading, sound: ForceSound): void {
   useEffect(() => {
     if (!trainer || !isRunning) return;
     const press = (event: KeyboardEvent) => {
-      if ((event.target as HTMLElement).closest(kNoKeysOfTools) || event.ctrlKey || event.metaKey || event.altKey) return;
+      if ((event.target as HTMLElement).closest(kTakesKeys) || event.ctrlKey || event.metaKey || event.altKey) return;
       const isLocked = document.pointerLockElement !== null;
       if (event.key === "Escape" && !isLocked) void trainer.end();
       else if (event.key === "Escape" || (event.key === " " && trainer.isHeld)) document.exitPointerLock?.(), trainer.letGo();

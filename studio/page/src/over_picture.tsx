@@ -8,7 +8,7 @@ import type { Trainer } from "./trainer";
 
 const kForceLimit = 10; // of a scene that has none [N]
 const kEdge = 16; // of the picture, that what is written leaves free [px]
-const kBesideTool = 12, kLabel = 260; // from the tool to what is written beside it, and room for that and the bar of the force [px]
+const kBesideTool = 12, kLabel = 200; // from the tool to what is written beside it, and room for that and the bar of the force [px]
 
 /** Force at which the bar is full [N]. */
 export function forceLimit(view: SceneView | null): number {
@@ -46,7 +46,7 @@ function placeRing(ring: HTMLElement, at: { x: number; y: number } | null): void
   ring.style.setProperty("--aside", `${Math.max(half, Math.min(width - half, at.x)) - at.x}px`);
 }
 
-/** How far the tool is above the tissue; empty: it touches. */
+/** How far the tool is above the tissue; empty: it touches, or is in it. */
 export function gapText({ gap }: Trainer): string {
   return gap === null ? "" : gap < Infinity ? `${millimetres(gap)} above` : "no tissue below";
 }
@@ -56,7 +56,7 @@ const handText = ({ handCount, led }: Trainer) => (handCount < 2 ? "" : led === 
 
 /** What stands beside the tool: the hand that is led, if there are two, and how far above the tissue it is. */
 function placeLabel(label: HTMLElement, at: { x: number; y: number } | null, trainer: Trainer): void {
-  const text = [trainer.awaited ? "" : handText(trainer), gapText(trainer)].filter(Boolean).join(" · ");
+  const text = [trainer.awaited ? "" : handText(trainer), gapText(trainer)].filter(Boolean).join("\n");
   label.classList.toggle("gone", at === null || text === "");
   if (!at || !text) return; // what it said fades away where it is
   const beside = trainer.toolSize + kBesideTool, isLeft = at.x + beside + kLabel > label.parentElement!.clientWidth;
