@@ -55,8 +55,13 @@ std::vector<bool> work_at(const SessionTrack& track, const std::vector<double>& 
   return works;
 }
 
-/// Measured without time: who waits before the work is not off the path in it.
-std::vector<Moment> deviations(const Comparison& comparison, const SessionTrack& expert, const SessionTrack& trainee) {
+bool meet(const Moment& a, const Moment& b) { return a.from_s <= b.to_s && b.from_s <= a.to_s; }
+
+/// Measured without time: who waits before the work is not off the path in it. Who is below the path for pressing too
+/// deep or too hard, which is one of `presses`, hears that once: a moment that meets one counts only if the tool would
+/// be off the path even if it were no deeper than the expert's ever was.
+std::vector<Moment> deviations(const Comparison& comparison, const SessionTrack& expert, const SessionTrack& trainee,
+                               const std::vector<Moment>& presses) {
   const std::vector<bool> by_expert = work_at(expert, comparison.expert_time);
   const bool is_all_work = std::ranges::find(by_expert, true) == by_expert.end();
   const std::vector<double>& time = comparison.trainee_time;
@@ -65,8 +70,20 @@ std::vector<Moment> deviations(const Comparison& comparison, const SessionTrack&
   for (std::size_t i = 0; i < time.size(); ++i)
     if (is_all_work || works[i]) distance[i] = distance_from(comparison.trainee_path[i], {&comparison.expert_path, 1});
   const double step = time.size() > 1 ? time[1] - time[0] : kSameMoment;
-  return moments_above(MomentKind::deviation, distance, time, comparison.path_limit,
-                       std::size_t(std::ceil(kSameMoment / step)), kMillimetres, "mm");
+  std::vector<Moment> moments = moments_above(MomentKind::deviation, distance, time, comparison.path_limit,
+                                              std::size_t(std::ceil(kSameMoment / step)), kMillimetres, "mm");
+  const double deepest = expert.depth.empty() ? 0 : std::ranges::max(expert.depth);
+  const auto is_aside = [&](std::size_t i) {
+    const double deeper = trainee.depth[std::size_t(std::llround(time[i] / trainee.tick))] - deepest;
+    return distance[i] - std::max(0.0, deeper) > comparison.path_limit;
+  };
+  std::erase_if(moments, [&](const Moment& off) {
+    if (std::ranges::none_of(presses, [&](const Moment& press) { return meet(off, press); })) return false;
+    for (std::size_t i = 0; i < time.size(); ++i)
+      if (time[i] >= off.from_s && time[i] <= off.to_s && is_aside(i)) return false;
+    return true;
+  });
+  return moments;
 }
 
 /// All idle spells of a session, in seconds.
@@ -197,7 +214,7 @@ std::vector<Moment> worst_moments(const Comparison& comparison, const SessionTra
   if (comparison.damage_depth > 0)
     append(moments,
            moments_above(MomentKind::depth, trainee.depth, time, comparison.damage_depth, gap, kMillimetres, "mm"));
-  append(moments, deviations(comparison, expert, trainee));
+  append(moments, deviations(comparison, expert, trainee, moments));
   if (expert.is_timed && trainee.is_timed) append(moments, long_pauses(expert, trainee));
   append(moments, stray_cuts(expert, trainee));
   append(moments, times_in_zones(trainee, gap));

@@ -2,6 +2,7 @@ import { render } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { Connection, onNewToken, takeToken } from "./connection";
 import { Author } from "./author";
+import { LeaveQuestion, type Recording } from "./leaving";
 import { Empty } from "./parts";
 import type { Listing } from "./protocol";
 import { hashOf, type Place, readHash, type Room } from "./place";
@@ -29,6 +30,8 @@ function App() {
   const [isClosed, setClosed] = useState(false), [otherVersion, setOtherVersion] = useState(""), [unreadable, setUnreadable] = useState("");
   const [listing, setListing] = useState<Listing | null>(null);
   const [room, setRoom] = useState<Room>(start.room);
+  const recording = useRef<Recording | null>(null); // which leaving the room would end
+  const [leaving, setLeaving] = useState<{ recording: Recording; go: () => void } | null>(null); // once that is wanted
 
   // A program that was ended, or this machine's sleep, ends the connection. It is looked for until it is back.
   useEffect(() => {
@@ -41,6 +44,7 @@ function App() {
       }, (differs) => {
         if (newest !== made) return;
         setClosed(true);
+        setLeaving(null);
         setOtherVersion(differs);
         if (!differs) timer = setTimeout(connect, kAskAgain); // a program of this page's version has another token
       });
@@ -62,20 +66,28 @@ function App() {
     setPlace(there);
     setRoom(to);
   };
+  /** Goes to another room: at once, or once it is sure that a recording is to end here. */
+  const leave = (goOn: () => void) => (recording.current ? setLeaving({ recording: recording.current, go: goOn }) : goOn());
   const go = (to: Room, there: Place) => {
-    if (to !== room) history.pushState(null, "", location.hash); // Back leads to the room before
-    show(to, there);
-    writePlace(to, there);
+    const enter = () => {
+      if (to !== room) history.pushState(null, "", location.hash); // Back leads to the room before
+      show(to, there);
+      writePlace(to, there);
+    };
+    if (to === room) enter();
+    else leave(enter);
   };
   useEffect(() => {
     const back = () => {
       if (new URLSearchParams(location.hash.slice(1)).has("token")) return; // the program's new address, in this tab: the page goes on
-      const { room, place } = readPlace();
-      show(room, place);
+      const to = readPlace();
+      if (!recording.current || to.room === room) return show(to.room, to.place);
+      history.pushState(null, "", `#${hashOf(room, {})}`); // the address waits for the answer too
+      leave(() => history.back());
     };
     addEventListener("popstate", back);
     return () => removeEventListener("popstate", back);
-  }, []);
+  }, [room]);
 
   return (
     <>
@@ -95,6 +107,13 @@ function App() {
           <button type="button" class="quiet" onClick={() => setUnreadable("")}>Close</button>
         </div>
       )}
+      {leaving && (
+        <LeaveQuestion recording={leaving.recording} onStay={() => setLeaving(null)} onLeave={() => {
+          recording.current = null;
+          setLeaving(null);
+          leaving.go();
+        }} />
+      )}
       <main>
         {isClosed && otherVersion ? (
           <Empty title="The program was updated">
@@ -113,7 +132,7 @@ function App() {
             <Author connection={connection} listing={listing} onChanged={list} onTry={(scene, text, seen) => go("train", { scene, text, seen })} />
           ) : (
             <Train connection={connection} listing={listing} tryScene={place.scene} tryText={place.text} tryView={place.seen} onChanged={list}
-              onReview={(there) => go("review", there)} onAuthor={() => go("author", {})} />
+              onRecording={(running) => (recording.current = running)} onReview={(there) => go("review", there)} onAuthor={() => go("author", {})} />
           )
         ) : (
           <Empty title="Connecting"><p>to the program on this machine.</p></Empty>

@@ -1,5 +1,6 @@
 import * as three from "three";
 import { kCopiesNormal, kCorrectionSteps, type OrganTriangles, type OrganView } from "./protocol";
+import type { Fall, ToolShadow } from "./tool_shadow";
 
 /** sRGB as linear light. */
 function linear(c: number): number {
@@ -27,13 +28,15 @@ function makeGlass(material: three.MeshPhongMaterial): three.MeshPhongMaterial {
 }
 
 /** Of the outside of an organ, of the walls of its cuts, and of an outside of glass. They outlive its triangles: the browser
-    would compile them again for each cut, which takes longer than everything else in a picture. */
-export function organMaterials(look: OrganView): three.MeshPhongMaterial[] {
+    would compile them again for each cut, which takes longer than everything else in a picture. `shadow`: that falls on tissue. */
+export function organMaterials(look: OrganView, shadow?: ToolShadow): three.MeshPhongMaterial[] {
   const shine = 0.04 + 0.09 * look.wetness;
   const material = (side: three.Side) =>
     new three.MeshPhongMaterial({ vertexColors: true, shininess: 34, specular: new three.Color(shine, shine, shine), side });
   // As in videos, what faces away is seen of the walls of cuts alone.
-  return [material(three.FrontSide), material(three.DoubleSide), makeGlass(material(three.FrontSide))];
+  const tissue = [material(three.FrontSide), material(three.DoubleSide)];
+  for (const each of tissue) shadow?.fallOn(each);
+  return [...tissue, makeGlass(material(three.FrontSide))];
 }
 
 /** The moving surface of one organ, with the walls of its cuts. */
@@ -131,6 +134,11 @@ export class OrganMesh {
     whole.position.copy(mesh.position), whole.quaternion.copy(mesh.quaternion), whole.scale.copy(mesh.scale);
     whole.updateMatrixWorld();
     return ray.intersectObject(whole, false)[0] ?? null;
+  }
+
+  /** Lets something fall onto its surface, as the newest frame has it. */
+  catch(fall: Fall): void {
+    fall.onto(this.position, this.index);
   }
 
   dispose(): void {

@@ -1,5 +1,5 @@
 import type { ComponentChildren } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useCallback, useEffect, useRef, useState } from "preact/hooks";
 import { CallFailed, problemText } from "./protocol";
 
 /** Numbers in a column, each with its unit; some say more when they are pointed at. */
@@ -13,6 +13,16 @@ export function Readings({ rows }: { rows: [string, ComponentChildren, string?][
         </div>
       ))}
     </dl>
+  );
+}
+
+/** Numbers of the machine, which say nothing of the hand: folded in a line that says in short how it does. */
+export function OfMachine({ says, rows }: { says: string; rows: [string, ComponentChildren, string?][] }) {
+  return (
+    <details class="of-machine">
+      <summary>The machine: {says}</summary>
+      <Readings rows={rows} />
+    </details>
   );
 }
 
@@ -87,6 +97,12 @@ export function Section({ title, children, aside }: { title: string; children: C
       {children}
     </section>
   );
+}
+
+/** Draws what calls it once more, for what changes outside of its state. */
+export function useRedraw(): () => void {
+  const [, setCount] = useState(0);
+  return useCallback(() => setCount((count) => count + 1), []);
 }
 
 /** Once what calls it is gone, the focus is where it was before, unless it is elsewhere by then. */

@@ -43,6 +43,8 @@ export interface SessionEvent {
 export interface SessionInfo {
   session_id: string;
   created_utc: string;
+  ended_cleanly: boolean; // false: recording was interrupted, or still runs
+  values: { [name: string]: number }; // of what led the hand
   physics_remark: string;
   tick_s: number;
   ticks: number;

@@ -2,6 +2,7 @@ import * as three from "three";
 import { type Frame, type HandFrame, type OrganSpheres, readWaitingFrame, type SceneView, type Shapes, type Spheres, type ToolShape, type Triangles, type Vector, type WaitingFrame } from "./protocol";
 import type { OrganPose } from "./items";
 import { OrganMesh, organMaterials } from "./organ_mesh";
+import type { Fall, ToolShadow } from "./tool_shadow";
 
 const kArrowPerNewton = 0.007; // [m/N]
 const kLongestArrow = 0.06; // [m]
@@ -31,8 +32,9 @@ export class StageScene {
   private readonly arrows = [makeArrow(), makeArrow()]; // of each hand
   private ghost: three.Mesh | null = null;
 
-  constructor(readonly view: SceneView) {
-    this.materials = view.organs.map(organMaterials);
+  /** `shadow`: that falls on its organs. */
+  constructor(readonly view: SceneView, shadow?: ToolShadow) {
+    this.materials = view.organs.map((organ) => organMaterials(organ, shadow));
     this.scene.add(new three.HemisphereLight(0xdfe8ff, 0x5a4a46, 2.2), ...this.arrows);
     for (const arrow of this.arrows) arrow.visible = false;
   }
@@ -87,6 +89,12 @@ export class StageScene {
     const normal = face!.normal.clone();
     if (normal.dot(ray.ray.direction) > 0) normal.negate();
     return { place: point.clone(), normal, organ };
+  }
+
+  /** Lets something fall onto the organs. */
+  fall(fall: Fall): Fall {
+    for (const organ of this.organs) organ.catch(fall);
+    return fall;
   }
 
   /** Draws an organ, whose frame has it at the pose `was`, at another one, until its next frame. */

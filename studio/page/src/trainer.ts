@@ -2,9 +2,11 @@ import * as three from "three";
 import type { Binary, Connection } from "./connection";
 import { readGamepad } from "./gamepad";
 import { aboveOrgans, kClearance } from "./items";
+import { Pace } from "./pace";
 import { orientationOf } from "./pose";
 import type { BegunTraining, CameraView, EndedTraining, Frame, HandFrame, Motion, SceneView, Vector } from "./protocol";
 import { StageScene } from "./stage_scene";
+import { Fall, ToolShadow } from "./tool_shadow";
 import { firstCamera, type Viewer } from "./viewer";
 
 export const kTrainStage = 2;
@@ -56,7 +58,10 @@ export class Trainer {
   onFailing: (problem: string) => void = () => {}; // what is recorded cannot be saved now
   isLedByKeys = false; // and not by the pointer since
   isLetGo = false; // by a key, with the pointer still in the picture
+  gap: number | null = null; // from the tool straight down to the tissue [m]; Infinity: there is none; null: it touches or is in it
+  pace = new Pace();
   private held = false;
+  private shadow: ToolShadow | null = null;
   private isLive = false; // its frames come
   private bears = { force_n: Infinity, depth_m: 0 }; // the hand, before it gives way
   private camera = 0; // of the scene, through which the hand looked last
@@ -142,8 +147,9 @@ export class Trainer {
     controls.mouseButtons.LEFT = this.awaited ? three.MOUSE.ROTATE : null;
     controls.touches = { ONE: this.awaited ? three.TOUCH.ROTATE : null, TWO: three.TOUCH.DOLLY_ROTATE };
     this.view = begun.view;
-    this.scene = new StageScene(begun.view);
-    this.scene.onFrame = (frame) => this.showGhost(frame);
+    this.shadow = new ToolShadow(), this.pace = new Pace();
+    this.scene = new StageScene(begun.view, this.shadow);
+    this.scene.onFrame = (frame) => this.takeFrame(frame);
     this.viewer.set(kTrainStage, this.scene);
     const camera = seen ?? firstCamera(begun.view);
     if (camera) this.viewer.look(camera);
@@ -182,10 +188,38 @@ export class Trainer {
     else this.showWaiting();
   }
 
+  /** Where the tool in the hand that is led is. */
+  private get place(): three.Vector3 {
+    const frame = this.ownFrame;
+    return frame && frame.tool >= 0 ? new three.Vector3(...frame.position) : this.own.hand;
+  }
+
+  /** Looks straight down from the tool in the hand that is led, onto the tissue as it is drawn, and casts its shadow there. */
+  lookDown(): void {
+    const { scene, view, ownFrame: frame } = this;
+    this.gap = null;
+    if (!scene || !view) return;
+    const up = new three.Vector3(...view.up), at = this.place, tool = frame && frame.tool >= 0 ? frame.tool : this.tool;
+    const { radius_m = 0, kind } = view.tools[tool] ?? {}, radius = kind === "scalpel" ? 0 : radius_m;
+    const isFree = this.isLive && tool >= 0 && (frame?.contacts ?? 0) === 0, fall = isFree ? scene.fall(new Fall(at, up, radius)) : null;
+    this.shadow?.cast(at, up, radius, fall);
+    if (fall && !fall.isInside) this.gap = fall.gap;
+  }
+
+  /** How large the tool in the hand that is led is drawn, from its place to its edge [px]. */
+  get toolSize(): number {
+    const { radius_m = 0, kind } = this.view?.tools[this.tool] ?? {};
+    return kind === "scalpel" ? 0 : radius_m / this.metresPerPixel(this.place);
+  }
+
+  private metresPerPixel(at: three.Vector3): number {
+    const { camera, canvas } = this.viewer;
+    return (2 * camera.position.distanceTo(at) * Math.tan((camera.fov * Math.PI) / 360)) / canvas.clientHeight;
+  }
+
   /** Where the tool in the hand that is led is drawn, in pixels of the picture; null: it is not in it. */
   get toolPixel(): { x: number; y: number } | null {
-    const { canvas } = this.viewer, frame = this.ownFrame;
-    const seen = this.viewer.pixelOf(frame && frame.tool >= 0 ? new three.Vector3(...frame.position) : this.own.hand);
+    const { canvas } = this.viewer, seen = this.viewer.pixelOf(this.place);
     return seen && seen.x >= 0 && seen.y >= 0 && seen.x <= canvas.clientWidth && seen.y <= canvas.clientHeight ? seen : null;
   }
 
@@ -210,9 +244,7 @@ export class Trainer {
 
   /** Moves the hand in its plane, by pixels of the picture. */
   movePixels(right: number, down: number): void {
-    const { camera, canvas } = this.viewer;
-    const away = camera.position.distanceTo(this.own.hand);
-    const metres = ((2 * away * Math.tan((camera.fov * Math.PI) / 360)) / canvas.clientHeight) * this.gain();
+    const metres = this.metresPerPixel(this.own.hand) * this.gain();
     this.moveBy(right * metres, -down * metres, 0);
   }
 
@@ -421,7 +453,8 @@ export class Trainer {
     return poses[Math.min(poses.length - 1, this.reached + Math.round(this.ghostAhead / interval_s))] ?? null;
   }
 
-  private showGhost(frame: Frame): void {
+  private takeFrame(frame: Frame): void {
+    this.pace.add(frame);
     if (this.motion && this.scene && !this.isExpertOfOtherScene) {
       const pose = this.expertNear(frame.position);
       this.scene.setGhost(pose);

@@ -59,6 +59,37 @@ TEST_F(WorstMoments, TheWayToTheWorkIsNotBlamed) {
   EXPECT_EQ(compare::compare_sessions(press(), track, scene_).moments.at(0).from_s, 0);
 }
 
+TEST_F(WorstMoments, APressThatIsTooDeepIsSaidOnceAndNotAsOffThePathBelowIt) {
+  using enum compare::MomentKind;
+  // Into tissue from z = 0.07 m on, so deep as the tip is below that.
+  const auto pressed = [&](double to_z, double aside = 0) {
+    compare::SessionTrack track = new_track();
+    const Vec3 above{0, 0, 0.1}, below{aside, 0, to_z};
+    go(track, above, below, 1), go(track, below, above, 1);
+    for (std::size_t i = 0; i < track.tick_count(); ++i) {
+      track.depth[i] = std::max(0.0, 0.07 - track.tip[i].z);
+      track.force[i] = 100 * track.depth[i];
+    }
+    return finished(track, scene_.model);
+  };
+  const compare::SessionTrack expert = pressed(0.068), deep = pressed(0.05);  // 2 and 20 mm deep, where 10 are borne
+  const recordings::SessionStart& scene = scene_;
+  const auto compared = [&](const compare::SessionTrack& track, double force_limit) {
+    return compare::compare_sessions(expert, track, scene, {.force_limit = force_limit});
+  };
+  const compare::Comparison below = compared(deep, 10);
+  ASSERT_LT(below.path_limit, 0.0075) << "9.5 mm deep, and deeper, is off a path of 2 mm";
+  EXPECT_EQ(kinds_of(below), std::vector{depth});
+  const std::vector<std::string> advice = compare::advice_of({expert, deep, scene, below});
+  ASSERT_EQ(advice.size(), 1u);
+  EXPECT_EQ(advice[0].find("Push less deep"), 0u) << advice[0];
+  // So it is of one that presses too hard; within all limits it is off the path, and nothing else says so.
+  EXPECT_EQ(kinds_of(compared(pressed(0.0605), 0.9)), std::vector{force});
+  EXPECT_EQ(kinds_of(compared(pressed(0.0605), 10)), std::vector{deviation});
+  // Who is beside the path, too, is told both.
+  EXPECT_EQ(kinds_of(compared(pressed(0.05, 0.03), 10)), (std::vector{depth, deviation}));
+}
+
 TEST_F(WorstMoments, HarmComesBeforePausesAndNoKindFillsTheList) {
   using enum compare::MomentKind;
   compare::SessionTrack expert = with_rests(0), track = with_rests(2.5);

@@ -80,7 +80,7 @@ async function lead(scene) {
   const pictures = (await page.evaluate(() => globalThis.pictures)) - before[0], time = (await busy()) - before[1];
   await page.press("Escape");
   await page.find("button", "Train again");
-  const row = (name) => page.evaluate((name) => [...document.querySelectorAll(".readings div")].find((row) => row.querySelector("dt")?.innerText === name).querySelector("dd").innerText, name);
+  const row = (name) => page.evaluate((name) => [...document.querySelectorAll(".readings div")].find((row) => row.querySelector("dt")?.textContent === name).querySelector("dd").textContent, name);
   console.log(`${scene}: ${(pictures / kSeconds).toFixed(1)} pictures a second, ${((1e3 * time) / pictures).toFixed(2)} ms of the main thread each; `
     + `pose to tick: half ${await row("half of the poses")}, 99 of 100 ${await row("99 of 100 poses")}, ${await row("within 5 ms")} within 5 ms; `
     + `tick to picture p50, p95 ${(await fromTicks()).join(", ")} ms; ${await row("late steps")} late steps`);

@@ -121,7 +121,7 @@ export async function openStudio(folder, port = 0, ...more) {
   const { page, complaints, close: closeBrowser } = await openBrowser({
     ignoreHTTPSErrors: more.includes("--behind"), // a certificate of the test's own
   });
-  page.on("dialog", (dialog) => complaints.push(`dialog: ${dialog.message()}`));
+  page.on("dialog", (dialog) => dialog.type() !== "beforeunload" && complaints.push(`dialog: ${dialog.message()}`));
   let cameAt = Date.now(); // the newest message of the program
   const live = { ready: 0, frames: 0 }; // of a training: how often the page asked for a picture, and how many came
   let sent = null, count = 0, rested = 0; // the hand that the page sent last, of how many, and how many of them were where it is
@@ -162,6 +162,12 @@ export async function openStudio(folder, port = 0, ...more) {
     server.kill("SIGKILL");
     await end;
   };
+  /** It gets no processor for that time, as on a machine that has none left. */
+  const starve = async (ms) => {
+    server.kill("SIGSTOP");
+    await new Promise((resolve) => setTimeout(resolve, ms));
+    server.kill("SIGCONT");
+  };
   /** From now on a file that it writes may not be longer: a longer write ends it there. */
   const limitFiles = (bytes) => {
     const { status, error } = spawnSync("prlimit", ["--pid", String(server.pid), `--fsize=${bytes}`]);
@@ -181,7 +187,7 @@ export async function openStudio(folder, port = 0, ...more) {
     });
     return (await answer.json()).result;
   };
-  return { page, address, complaints, close, kill, limitFiles, ended: () => (server.exitCode ?? server.signalCode ?? ended(server)), startAgain, call, hand: () => sent, handsSent: () => count, live, handAtRest, quiet };
+  return { page, address, complaints, close, kill, starve, limitFiles, ended: () => (server.exitCode ?? server.signalCode ?? ended(server)), startAgain, call, hand: () => sent, handsSent: () => count, live, handAtRest, quiet };
 }
 
 /** Reads until what was read is as it should be; the last that was read. */
@@ -314,8 +320,8 @@ export function overflow(page) {
   return page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 }
 
-/** The number in the reading of that name. */
+/** The number in the reading of that name, which may be folded. */
 export async function reading(page, name) {
-  const text = await page.locator(`.readings div:has(dt:text-is("${name}")) dd`).first().innerText();
+  const text = await page.locator(`.readings div:has(dt:text-is("${name}")) dd`).first().textContent();
   return Number.parseFloat(text);
 }

@@ -36,6 +36,15 @@ step("the mouse leads one of two hands, and the other one stays", async () => {
   await page.keyboard.press("x");
   await page.waitForFunction(() => document.querySelector(".transport button[aria-pressed=true]").textContent.includes("left hand"));
   assert.equal(await pressed("scalpel"), "true");
+  // The picture says which one it is, at its tool.
+  const label = page.locator(".tool-label"), left = (element) => element.getBoundingClientRect().left;
+  assert.match(await until(() => label.textContent(), (text) => /^left hand/.test(text)), /^left hand\n[\d.]+ mm above$/);
+  const ofLeft = await label.evaluate(left);
+  await picture(page, "train-left-hand");
+  await page.keyboard.press("x");
+  assert.equal(await until(() => label.textContent(), (text) => text === "right hand"), "right hand"); // it touches
+  assert.ok(Math.abs((await label.evaluate(left)) - ofLeft) > 20, "it went to the other tool");
+  await page.keyboard.press("x");
   const held = await reading(page, "force, right");
   await moveMouse(page, { x: middle.x, y: middle.y + 150 }, { x: -30, y: 80 }, 20);
   assert.ok((await reading(page, "force, right")) > 0.3 * held, "the ball still presses");
@@ -222,6 +231,7 @@ step("a recording is there up to the moment when the program was killed", async 
   await other.goto(await studio.startAgain());
   await page.waitForSelector(".list button:has-text('kidney')"); // the page goes on
   await other.close();
+  await page.waitForSelector("aside .warning:has-text('killed.ctpm has no clean end')");
   studio.complaints.splice(complaints); // that nothing answered
   const recovered = ctpm(folder, "recover", "killed.ctpm", "-o", "recovered.ctpm");
   assert.equal(recovered.code, 3, recovered.out + recovered.err); // the end was lost
@@ -231,7 +241,7 @@ step("a recording is there up to the moment when the program was killed", async 
 });
 
 step("on a tablet one finger moves the tool, two look around, and buttons do what keys do", async () => {
-  await page.click("header nav button:has-text('Train')");
+  await page.click("button:has-text('Choose a scene')");
   await page.setViewportSize({ width: 820, height: 1180 });
   const input = await page.context().newCDPSession(page);
   await input.send("Emulation.setTouchEmulationEnabled", { enabled: true, maxTouchPoints: 5 });

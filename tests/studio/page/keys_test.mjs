@@ -71,6 +71,15 @@ step("by keys a trainee starts, presses, records, ends, verifies and compares", 
   await until(() => reading(page, "newest step"), (ms) => ms > 0);
   for (let i = 0; i < 46; ++i) await press("ArrowDown");
   await page.waitForFunction(() => Number.parseFloat(document.querySelector(".force-bar output").textContent) > 0.1);
+  // Another room asks first, and Escape is an answer: to stay.
+  await toButton("Review");
+  await press("Enter");
+  await page.waitForSelector("dialog");
+  assert.equal(await page.evaluate(() => document.activeElement.textContent), "Go on training");
+  await press("ArrowDown");
+  await press("Escape");
+  await page.waitForSelector("dialog", { state: "detached" });
+  assert.ok(await page.locator(".view.running").count(), "it goes on");
   await press("ArrowUp");
   await press("2");
   await page.waitForSelector(".transport button[aria-pressed=true]:has-text('scalpel')");

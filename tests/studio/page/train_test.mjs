@@ -72,6 +72,140 @@ step("names in a scene are text", async () => {
   assert.equal(await page.locator(".objects button:has-text('<img src=x onerror=alert(1)>')").count(), 1);
   assert.equal(await page.locator("main img, main b[onclick]").count(), 0);
   await page.click("header nav button:has-text('Train')");
+  await page.click("button:has-text('Choose a scene')");
+});
+
+step("beside the tool stands how far it is above the tissue, until it touches, and its shadow falls there", async () => {
+  await begin(page, "kidney");
+  await takeUpByKeys(page);
+  const canvas = page.locator(".view > canvas"), label = page.locator(".tool-label"), { right } = handAxes();
+  const above = async () => Number.parseFloat(/^([\d.]+) mm above$/.exec(await label.textContent())?.[1]);
+  const down = async (mm) => {
+    for (let i = 0; i < mm; ++i) await page.keyboard.press("ArrowDown");
+    return studio.handAtRest();
+  };
+  /** What stands there once the hand has come to rest, and pictures show it there. */
+  const rested = async () => {
+    const said = [await above()];
+    do await page.waitForTimeout(250), said.push(await above());
+    while (said.length < 40 && said.slice(-3).some((mm) => mm !== said.at(-1)));
+    return said.at(-1);
+  };
+  const start = await down(0), far = await rested();
+  await down(5);
+  const nearer = await rested();
+  assert.ok(Math.abs(nearer - (far - 5)) < 0.35, `${far} mm, and 5 mm lower ${nearer} mm`);
+  assert.equal((await page.locator(".readings div:has(dt:text-is('to the tissue')) dd").innerText()).replace(/[\d.]+/, ""), " mm above");
+  const shadowed = await canvas.screenshot();
+  await picture(page, "train-above");
+  // Aside, where there is no tissue, and back.
+  const aside = Math.round(1e3 * (0.06 + Math.abs(dot(start, right))));
+  for (let i = 0; i < aside; ++i) await page.keyboard.press("ArrowLeft");
+  await page.waitForFunction(() => document.querySelector(".tool-label").textContent === "no tissue below");
+  await picture(page, "train-beside");
+  /** How many pixels of the tissue are otherwise without a tool above it: white, which is the ring, and darker, which is the shadow. */
+  const unshadowed = pixelsOf(await canvas.screenshot()).data, cast = (png) => {
+    const { data } = pixelsOf(png), count = { ring: 0, shadow: 0 };
+    for (let i = 0; i < data.length; i += 4) {
+      const [red, green, blue] = data.subarray(i, i + 3), was = unshadowed[i];
+      if (was < 60 || unshadowed[i + 1] > 60 || unshadowed[i + 2] > 60) continue;
+      count.ring += Number(Math.min(red, green, blue) > 120), count.shadow += Number(red < 0.7 * was && red > 2 * green);
+    }
+    return count;
+  };
+  const { ring, shadow } = cast(shadowed);
+  assert.ok(ring > 100 && shadow > 100, `${ring} pixels of a ring, ${shadow} of a shadow`);
+  for (let i = 0; i < aside; ++i) await page.keyboard.press("ArrowRight");
+  assert.ok(Math.abs((await rested()) - nearer) < 0.35, "and back over the same place");
+  // Down to where it touches: by as much as was said, within how round the tissue's spheres are.
+  let low = await studio.handAtRest();
+  while ((await reading(page, "touched")) === 0 && start[2] - low[2] < 0.05) low = await down(1), await page.waitForTimeout(250);
+  const went = 1e3 * (start[2] - low[2]);
+  console.log(`training: ${far} mm above the tissue, and it touched after ${went.toFixed(1)} mm`);
+  assert.ok(Math.abs(went - far) < 2.5, `${far} mm were said, and it touched after ${went} mm`);
+  await page.waitForSelector(".tool-label.gone", { state: "attached" });
+  assert.equal(await page.locator(".readings div:has(dt:text-is('to the tissue')) dd").innerText(), "touches it");
+  const left = cast(await canvas.screenshot()).shadow;
+  assert.ok(left < shadow / 4, `${left} pixels of a shadow of ${shadow} are left`);
+  await end(page);
+  await page.click("button:has-text('Choose a scene')");
+});
+
+step("a session that falls behind the clock says so in the picture, and what helps, until it keeps up", async () => {
+  await begin(page, "kidney");
+  await takeUpByKeys(page);
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 0.2);
+  assert.match(await page.locator(".of-machine summary").innerText(), /^The machine: /);
+  const said = page.locator(".view .slow-motion");
+  await studio.starve(3000);
+  await said.waitFor();
+  assert.match(await said.innerText(), /^This machine is too slow for what happens here: [1-9]\d* s behind the clock\s+The tissue moves at \d+ % of its pace.*close other programs/s);
+  await picture(page, "train-slow-motion");
+  assert.deepEqual(await seriousFindings(page), []);
+  await said.waitFor({ state: "detached" });
+  assert.ok((await reading(page, "behind the clock")) > 2, "what was lost stays lost");
+  await end(page);
+  await page.click("button:has-text('Choose a scene')");
+});
+
+step("leaving the room, or the page, asks before it ends a recording, which is there when somebody comes back", async () => {
+  const question = page.locator("dialog"), room = () => page.evaluate(() => new URLSearchParams(location.hash.slice(1)).get("room"));
+  const goOnRecording = async () => {
+    await takeUpByKeys(page);
+    await page.waitForFunction(() => Number.parseFloat(document.querySelector(".clock").textContent) > 0.3);
+  };
+  await begin(page, "kidney", "left.ctpm");
+  await page.locator("aside .field:has-text('expert') select").selectOption(kOther);
+  await page.click("header nav button:has-text('Review')"); // nothing is recorded yet
+  await page.waitForSelector(".room.review");
+  await page.click("header nav button:has-text('Train')");
+  await page.waitForSelector(".view .empty:has-text('Choose a scene to train in')");
+  await begin(page, "kidney", "left.ctpm");
+  await page.locator("aside .field:has-text('expert') select").selectOption(kOther);
+  await goOnRecording();
+  await page.click("header nav button:has-text('Review')");
+  await question.waitFor();
+  assert.match(await question.innerText(), /Leaving this room ends the recording here\. It is kept as left\.ctpm/);
+  assert.deepEqual(await seriousFindings(page), []);
+  await picture(page, "train-leaving");
+  const before = await page.locator(".clock").innerText();
+  await page.click("dialog button:has-text('Go on training')");
+  await question.waitFor({ state: "detached" });
+  await page.waitForFunction((before) => document.querySelector(".clock").textContent !== before, before);
+  // The browser's way back asks too.
+  await page.evaluate(() => history.back());
+  await question.waitFor();
+  assert.equal(await room(), "train");
+  await page.click("dialog button:has-text('End the recording and leave')");
+  await page.waitForSelector(".room.review");
+  assert.equal(await room(), "review");
+  const info = () => JSON.parse(ctpm(folder, "info", "left.ctpm", "--json").out);
+  assert.ok(info().ended_cleanly && info().duration_s > 0.3);
+  await page.click("header nav button:has-text('Train')");
+  const ended = async (session) => {
+    await page.waitForSelector("aside .readings dt:text-is('recorded as')");
+    assert.equal(await page.locator(".readings div:has(dt:text-is('recorded as')) dd").innerText(), session);
+    assert.match(await page.locator("aside button.main").innerText(), /^Verify/);
+    assert.equal(await page.locator("aside .field:has-text('expert') select").inputValue(), kOther);
+  };
+  await ended("left.ctpm");
+  await picture(page, "train-come-back");
+  await page.click("button:has-text('Train again')");
+  await page.waitForSelector(".view.running");
+  assert.equal((await page.locator(".recorded").textContent()).trim(), "records left-2.ctpm");
+  await goOnRecording();
+  const asked = new Promise((resolve) => page.once("dialog", (dialog) => (resolve(dialog.type()), void dialog.accept())));
+  await page.reload();
+  assert.equal(await asked, "beforeunload");
+  await ended("left-2.ctpm");
+  assert.ok((await reading(page, "duration")) > 0.2);
+  await page.click("button.main:has-text('Verify')");
+  assert.match(await page.locator("aside .good").first().innerText(), /^The recording, replayed: same/);
+  await page.click("button:has-text('Choose a scene')");
+  // Who has chosen another scene does not come back to it, nor is a page asked that records nothing.
+  await page.reload();
+  await page.waitForSelector(".view .empty:has-text('Choose a scene to train in')");
+  for (const name of ["left.ctpm", "left-2.ctpm"]) rmSync(join(folder, name));
 });
 
 step("the wheel moves the tool away from the viewer, and the pointer slows as the tissue resists", async () => {
@@ -287,7 +421,7 @@ step("the mouse presses, cuts and records", async () => {
   assert.ok(asked > 10 && came >= asked - 2 && came <= asked + others, `${asked} pictures asked for, ${came} came`);
   await picture(page, "train-cut");
   await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /99 of 100 stepsunder \d/.test(d.textContent)));
-  const ticks = await page.locator(".readings div:has(dt:text-is('99 of 100 steps')) dd").innerText();
+  const ticks = await page.locator(".readings div:has(dt:text-is('99 of 100 steps')) dd").textContent();
   console.log(`training: ${await reading(page, "late steps")} late ticks, 99 of 100 ticks ${ticks}, while a browser draws on the same processors`);
   const behind = await reading(page, "behind the clock"), newest = await reading(page, "newest step");
   const depth = await reading(page, "depth"); // of the blade, along it
@@ -311,7 +445,7 @@ step("the mouse presses, cuts and records", async () => {
   await stays();
   assert.ok(behind >= 0 && newest > 0 && Number(/under ([\d.]+) ms/.exec(ticks)[1]) > 0, `${behind} s behind, tick of ${newest} ms, ${ticks}`);
   await end(page);
-  assert.match(await page.locator(".readings div:has(dt:text-is('behind the clock')) dd").first().innerText(), /never|at most/);
+  assert.match(await page.locator(".readings div:has(dt:text-is('behind the clock')) dd").first().textContent(), /never|at most/);
 });
 
 step("the session verifies to the bit, and is compared at once", async () => {
@@ -373,6 +507,8 @@ const groups = () => page.locator("aside .field:has-text('expert') optgroup").ev
 
 step("an expert's session of another scene is said to be one, in a training and after it", async () => {
   await page.click("header nav button:has-text('Train')");
+  await page.waitForSelector("aside button.main:text-is('Verify and compare')"); // of mine.ctpm, still
+  await page.click("button:has-text('Choose a scene')");
   const choice = page.locator("aside .field:has-text('expert') select"), warning = page.locator("aside .warning:has-text('of another scene')");
   await choice.selectOption(kOther);
   await begin(page, "kidney", "other.ctpm");
@@ -395,6 +531,7 @@ step("an expert's session of another scene is said to be one, in a training and 
 });
 
 step("the first expert's session of the scene is proposed for what is recorded, and for nothing else", async () => {
+  await page.click("button:has-text('Choose a scene')");
   await page.click("header nav button:has-text('Review')");
   await page.click("header nav button:has-text('Train')");
   const chosen = () => page.locator("aside .field:has-text('expert') select").inputValue();
