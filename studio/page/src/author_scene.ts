@@ -3,7 +3,8 @@ import type { JSONPath } from "jsonc-parser";
 import * as three from "three";
 import { takenAlong } from "./belongings";
 import type { Connection } from "./connection";
-import { moveDraft, SceneDocument, takeDraft } from "./document";
+import { SceneDocument } from "./document";
+import { dropKept, moveKept } from "./drafts";
 import { type Item, itemsOf, listOf, type OrganPose, organPoses } from "./items";
 import type { Json } from "./json_edit";
 import { CallFailed, type Problem, type SceneView, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
@@ -56,14 +57,15 @@ function middleOf(centres: Float32Array): three.Vector3 {
   return box.getCenter(new three.Vector3());
 }
 
-/** Scenes that were open keep their history while the page is there; those that were removed in it, too, by where they are. */
+/** Scenes that were open, those that were removed in this page by where they are. */
 const documents = new Map<string, SceneDocument>();
 let lastOpen = "";
 
 /** A scene's history and its draft go where its file goes. */
 function moveDocument(from: string, to: string): void {
-  moveDraft(from, to);
   const doc = documents.get(from);
+  doc?.keepHistory();
+  moveKept(from, to);
   documents.delete(from);
   if (doc) documents.set(to, doc);
   else documents.delete(to);
@@ -185,7 +187,7 @@ export class AuthorScene {
 
   /** It is gone for good. */
   deleted(path: string, folder: string): void {
-    takeDraft(`${folder}/${path}`);
+    dropKept(`${folder}/${path}`);
     documents.delete(`${folder}/${path}`);
   }
 

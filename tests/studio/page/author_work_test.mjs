@@ -160,7 +160,7 @@ step("changes of one value within half a second are one step", async () => {
 // Ten steps in each round: 200 as is promised, or enough of each kind.
 const kRounds = isWhole ? 20 : 3;
 
-step(`${10 * kRounds} steps of all kinds are undone and done again, each as it was`, async () => {
+step(`${10 * kRounds} steps of all kinds are undone and done again, each as it was, also after the page was loaded anew`, async () => {
   await page.setViewportSize({ width: 1000, height: 560 }); // fewer pixels are drawn for each
   await page.click("#tab-place");
   const before = await text(), steps = [before];
@@ -202,20 +202,25 @@ step(`${10 * kRounds} steps of all kinds are undone and done again, each as it w
     await page.keyboard.press("Delete");
     await did("remove the probe by key");
   }
-  const count = 10 * kRounds;
+  const count = 10 * kRounds, half = count / 2;
   assert.equal(steps.length, count + 1);
-  for (let i = count - 1; i >= 0; --i) {
+  const undo = async (to) => {
     await page.keyboard.press("Control+z");
-    assert.equal(await text(), steps[i], `undone to step ${i}`);
-  }
-  assert.ok(!(await button("Undo").isEnabled()) || (await text()) === before);
-  for (let i = 1; i <= count; ++i) await page.keyboard.press("Control+Shift+z");
-  assert.equal(await text(), steps[count]);
-  await page.evaluate((key) => localStorage.removeItem(key), `ctpm.draft:${kScene}`);
-  await page.setViewportSize({ width: 1280, height: 720 });
+    assert.equal(await text(), steps[to], `undone to step ${to}`);
+  };
+  for (let i = count - 1; i >= half; --i) await undo(i);
+  // The page is loaded anew in the middle of them: what leads on is there, and so is what led here.
   await page.reload();
   await openScene();
-  assert.equal(await text(), before);
+  await page.waitForSelector(".earlier-visit");
+  assert.equal(await text(), steps[half]);
+  for (let i = half + 1; i <= count; ++i) {
+    await page.keyboard.press("Control+Shift+z");
+    assert.equal(await text(), steps[i], `done again to step ${i}`);
+  }
+  assert.ok(!(await button("Redo").isEnabled()));
+  for (let i = count - 1; i >= 0; --i) await undo(i);
+  await page.setViewportSize({ width: 1280, height: 720 });
 });
 
 /** Goes to a control by the tabulator alone. */
@@ -371,7 +376,7 @@ step("a blade cuts when a scene is tried, and nothing is kept", async () => {
   await settled();
 });
 
-step("a draft is there after its tab was closed", async () => {
+step("a draft is there after its tab was closed, until the file says the same", async () => {
   const saved = onDisk(), changed = saved.replace('"name": "kidney"', '"name": "not saved"');
   await write(changed);
   assert.equal(await text(), changed);
@@ -386,7 +391,7 @@ step("a draft is there after its tab was closed", async () => {
   await openScene();
   assert.equal(await text(), changed);
   assert.match(await page.locator(".verdict").textContent(), /not saved$/);
-  const told = page.locator(".earlier-visit[role=status]:has-text('unsaved changes of an earlier visit: Undo goes back to the file')");
+  const told = page.locator(".earlier-visit[role=status]:has-text('unsaved changes of an earlier visit: Undo takes them back')");
   await told.waitFor();
   assert.deepEqual(await seriousFindings(page), []);
   await picture(page, "author-earlier-visit");
@@ -396,7 +401,41 @@ step("a draft is there after its tab was closed", async () => {
   assert.equal(await marked.count(), 0);
   await page.keyboard.press("Control+Shift+z");
   assert.equal(onDisk(), saved);
+  // One that another tab wrote: the history is none of it, and one step leads back to the file.
+  const others = changed.replace("not saved", "of another tab");
+  await page.waitForFunction(([key, text]) => JSON.parse(localStorage.getItem(key)).doc === text, [`ctpm.history:${kScene}`, changed]);
+  await page.evaluate(([key, text]) => localStorage.setItem(key, text), [`ctpm.draft:${kScene}`, others]);
+  await page.reload();
+  await openScene();
+  assert.equal(await text(), others);
+  assert.ok(!(await button("Redo").isEnabled()));
+  await page.keyboard.press("Control+z");
+  assert.equal(await text(), saved);
+  assert.ok(!(await button("Undo").isEnabled()));
+  await page.keyboard.press("Control+Shift+z");
+  // Somebody writes into the file what is here, with other ends of lines: it is saved, and nobody is asked.
+  writeFileSync(join(folder, kScene), others.replaceAll("\n", "\r\n"));
+  await page.waitForSelector(".verdict:has-text(', saved')");
+  assert.equal(await page.locator(".conflict").count(), 0);
+  assert.equal(await marked.count(), 0);
+  await page.keyboard.press("Control+z");
+  await save();
+  assert.equal(onDisk(), saved);
+  // The same while the scene is not open: its mark goes when its author comes back to the window.
+  await page.keyboard.press("Control+Shift+z");
+  await page.reload();
+  await page.waitForFunction(() => document.querySelector(".scenes li button[aria-describedby]"));
+  writeFileSync(join(folder, kScene), others);
+  await page.evaluate(() => dispatchEvent(new Event("focus")));
+  await marked.waitFor({ state: "detached" });
+  assert.equal(await page.evaluate((key) => localStorage.getItem(key), `ctpm.draft:${kScene}`), null);
+  await openScene();
+  await page.waitForSelector(".verdict:has-text(', saved')");
+  await page.keyboard.press("Control+z");
+  await save();
+  assert.equal(onDisk(), saved);
 });
+
 
 step("a program that is killed while it writes leaves the scene whole, and nothing is lost", async () => {
   const saved = onDisk(), longer = `${await text()}\n${" ".repeat(300_000)}\n`;
