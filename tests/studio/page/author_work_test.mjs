@@ -88,6 +88,34 @@ step("the slider is dragged with the mouse: one step, its numbers are told, and 
   await settled();
 });
 
+step("a change that is taken back while the time of a step is measured leaves nothing unmeasured", async () => {
+  const before = await text(), time = () => page.waitForFunction(() => / ms it has$/.test([...document.querySelectorAll("#panel .readings div")].find((d) => d.textContent.startsWith("a step takes"))?.lastChild.textContent ?? ""));
+  await time();
+  // As soon as it is measured, a tool is added and taken back at once.
+  await page.evaluate(() => {
+    globalThis.said = [];
+    globalThis.watching = new MutationObserver(() => {
+      const cost = [...document.querySelectorAll("#panel .readings div")].find((d) => d.textContent.startsWith("a step takes"))?.lastChild.textContent ?? "";
+      if (!cost.startsWith("measuring")) return;
+      globalThis.watching.disconnect();
+      globalThis.said.push(cost);
+      for (const name of ["+ scalpel", "Undo"]) [...document.querySelectorAll(".author button")].find((button) => button.textContent === name).click();
+    });
+    globalThis.watching.observe(document.querySelector("#panel"), { subtree: true, childList: true, characterData: true });
+  });
+  await page.locator("#panel .slider input").first().focus();
+  for (let i = 0; i < 4; ++i) await page.keyboard.press("ArrowLeft");
+  const changed = await text();
+  await page.waitForFunction(() => globalThis.said.length > 0);
+  await settled();
+  assert.equal(await text(), changed, "the tool was taken back");
+  await page.click("#tab-filling");
+  await time();
+  await page.keyboard.press("Control+z");
+  assert.equal(await text(), before);
+  await settled();
+});
+
 step("spheres are drawn in the colours of their layers, and those that never move in blue", async () => {
   await button("spheres").click();
   await page.waitForTimeout(300);
