@@ -220,6 +220,42 @@ step("anchors are painted by the brush; a stroke is one step", async () => {
   assert.deepEqual((await save()).organs[0].anchors, painted);
 });
 
+step("the view turns about what is up, and calmly where it looks straight down", async () => {
+  const view = await page.locator(".view canvas").boundingBox(), before = await text(), kDegree = Math.PI / 180;
+  const at = { x: view.x + 0.96 * view.width, y: view.y + 0.12 * view.height };
+  /** Where it is seen from: around what is up, and above the horizon [degrees]. */
+  const seen = async () => {
+    await button("+ this view", ".objects").click();
+    const { eye_mm, target_mm, up } = (await scene()).cameras.at(-1), [x, y, z] = eye_mm.map((e, i) => e - target_mm[i]);
+    await page.keyboard.press("Control+z");
+    assert.deepEqual(up, [0, 0, 1]);
+    return { around: Math.atan2(y, x) / kDegree, above: Math.asin(z / Math.hypot(x, y, z)) / kDegree };
+  };
+  const apart = (a, b) => Math.abs(((a - b + 540) % 360) - 180), turn = (pixels) => (360 * pixels) / view.height;
+  await page.locator(".objects button", { has: page.locator('span:text-is("front")') }).click();
+  await button("Look through it", "#panel").click();
+  const first = await seen();
+  await drag(at, { x: 0, y: 40 });
+  const higher = await seen();
+  assert.ok(apart(higher.around, first.around) < 0.5 && Math.abs(higher.above - first.above - turn(40)) < 1, JSON.stringify([first, higher]));
+  // Far beyond straight down: it stops there, and what was in front stays in front.
+  await drag(at, { x: 0, y: 0.6 * view.height }, 30);
+  const above = await seen();
+  assert.ok(above.above > 89 && apart(above.around, first.around) < 1, JSON.stringify([first, above]));
+  await picture(page, "author-straight-down");
+  await drag(at, { x: -40, y: 3 });
+  const beside = await seen();
+  assert.ok(beside.above > 89 && Math.abs(apart(beside.around, above.around) - turn(40)) < 1, JSON.stringify([above, beside]));
+  // By keys too.
+  await page.locator(".view canvas").focus();
+  for (const key of ["w", "w", "d"]) await page.keyboard.press(key);
+  const byKeys = await seen();
+  assert.ok(byKeys.above > 89 && Math.abs(apart(byKeys.around, beside.around) - 0.1 / kDegree) < 1, JSON.stringify([beside, byKeys]));
+  await page.locator(".objects button", { has: page.locator('span:text-is("front")') }).click();
+  await button("Look through it", "#panel").click();
+  assert.equal(await text(), before);
+});
+
 step("a camera is the view that was orbited to", async () => {
   const view = await page.locator(".view canvas").boundingBox();
   await drag({ x: view.x + 0.9 * view.width, y: view.y + 0.8 * view.height }, { x: -160, y: -40 }, 10);
