@@ -143,7 +143,7 @@ TEST_F(AuthorTest, TheShapeErrorOfAFillingIsThatOfPlan) {
   const Serving serving(folder_.path());
   SocketClient client(serving);
   std::vector<std::string> told;
-  for (const double radius : {4, 2}) {
+  for (const double radius : {4, 2, 9}) {
     text_["organs"][0]["fill"] = {{"radius_mm", radius}, {"gap_mm", radius}};
     const auto shown = client.call("scene.show", {{"path", "kidney.json"}, {"stage", kStage}, {"text", text_.dump()}});
     ASSERT_TRUE(shown.contains("result")) << shown;
@@ -157,6 +157,11 @@ TEST_F(AuthorTest, TheShapeErrorOfAFillingIsThatOfPlan) {
     EXPECT_GT(figures["largest_mm"].get<double>(), figures["p95_mm"].get<double>());
     EXPECT_NE(told.back().find("95 % within " + importers::mm_text(1e-3 * figures["p95_mm"].get<double>())),
               std::string::npos);
+    // What is too thin for its spheres is said in the same words, too.
+    const std::string thin = shown["result"]["organs"][0]["thin_parts"];
+    EXPECT_EQ(thin.empty(), plan.err.find("spheres lie in tissue thinner than") == std::string::npos) << plan.err;
+    EXPECT_NE(plan.err.find(thin), std::string::npos) << thin << plan.err;
+    EXPECT_EQ(thin.empty(), radius < 8) << thin;
   }
   EXPECT_NE(told[0], told[1]);
 }
