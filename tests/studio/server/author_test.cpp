@@ -254,6 +254,37 @@ TEST_F(AuthorTest, TheScatterIsThatOfTheCommand) {
   for (std::size_t i = 0; i < printed.size(); ++i) EXPECT_NEAR(printed[i], told[i], 1e-9 * printed[i]);
 }
 
+TEST_F(AuthorTest, AFitIsThatOfTheCommandAndKeepsTheRestOfTheText) {
+  text_["organs"][0]["fill"] = {{"radius_mm", 6}, {"gap_mm", 6}};
+  const std::string text = "// mine\n" + text_.dump(2);
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const nlohmann::json asked = {{"path", "kidney.json"}, {"text", text}, {"organ", "kidney"}};
+  const auto presses = progress_of(client, "scene.fit", asked);
+  ASSERT_FALSE(presses.empty());
+  for (const auto& [done, most] : presses) EXPECT_TRUE(done < most && most == 45) << done << " of " << most;
+  const auto fitted = client.call("scene.fit", asked)["result"];
+  std::ofstream(folder_.path() / "kidney.json") << text;
+  const auto command = testing::run_ctpm({"fit", "kidney.json", "--organ", "kidney", "--write"}, folder_.path());
+  ASSERT_EQ(command.code, 0) << command.err;
+  EXPECT_EQ(fitted["text"], testing::slurp(folder_.path() / "kidney.json"));
+  const nlohmann::json scene = nlohmann::json::parse(fitted["text"].get<std::string>(), nullptr, true, true);
+  const nlohmann::json& material = scene["organs"][0]["material"];
+  EXPECT_EQ(material["fitted_for"]["sphere_radius_mm"], 6);
+  EXPECT_NEAR(material["stiffness_scale"].get<double>(), fitted["stiffness_scale"].get<double>(), 1e-5);
+  EXPECT_NE(material["stiffness_scale"], text_["organs"][0]["material"]["stiffness_scale"]);
+  ASSERT_EQ(fitted["rows"].size(), 6u);
+  EXPECT_NEAR(fitted["rows"][5]["error"].get<double>(), 0, 0.002);
+  EXPECT_EQ(fitted["is_of_table"], true);
+  EXPECT_NE(command.out.find("Table 1, CTPM [N]"), std::string::npos) << command.out;
+  nlohmann::json other = asked;
+  other["organ"] = "liver";
+  const auto refused = client.call("scene.fit", other);
+  ASSERT_TRUE(refused.contains("errors")) << refused;
+  EXPECT_EQ(refused["errors"][0]["where"], "kidney.json");
+  EXPECT_EQ(refused["errors"][0]["hint"], "it has: kidney");
+}
+
 TEST_F(AuthorTest, WhatTakesLongCanBeStoppedAndLeavesNothing) {
   const Serving serving(folder_.path());
   SocketClient client(serving);
@@ -265,6 +296,9 @@ TEST_F(AuthorTest, WhatTakesLongCanBeStoppedAndLeavesNothing) {
   text_["organs"][0]["fill"] = {{"radius_mm", 2}, {"gap_mm", 2}};
   const auto scatter = stopped(client, "scene.scatter", {{"path", "kidney.json"}, {"text", text_.dump()}});
   ASSERT_TRUE(scatter.contains("errors")) << scatter;
+  const auto fit = stopped(client, "scene.fit", {{"path", "kidney.json"}, {"text", text_.dump()}});
+  ASSERT_TRUE(fit.contains("errors")) << fit;
+  EXPECT_EQ(fit["errors"][0]["message"], "stopped");
 }
 
 /// The kidney without the triangles of its end, where x is the largest.
