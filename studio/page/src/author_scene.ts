@@ -25,6 +25,7 @@ export interface ShownOrgan {
   spheres: number;
   anchored: number;
   shape_error: string; // in the command's words; empty: a rig
+  thin_parts: string; // the same; empty: none is too thin for its spheres
   report: string;
   findings: Finding[];
 }

@@ -136,6 +136,10 @@ step("the scatter in full is that of the command", async () => {
   await write((await text()).replace('"radius_mm": 4, "gap_mm": 4', '"radius_mm": 6, "gap_mm": 6'));
   await save();
   await settled();
+  // What is too thin for so large spheres is said as `plan` says it.
+  const thin = /\d+ of \d+ spheres lie in tissue thinner than .*? mm(?= \(a smaller)/.exec(ctpm(folder, "plan", kScene, "--quick").err)[0];
+  assert.ok((await page.locator("#panel .fine-enough.warning").textContent()).includes(thin), thin);
+  await picture(page, "author-too-coarse");
   const command = ctpmBeside(folder, "fidelity", kScene, "-o", "fidelity");
   await button("In full", "#panel").click();
   await page.waitForSelector("#panel .scatter");

@@ -201,12 +201,29 @@ step("anchors are painted by the brush; a stroke is one step", async () => {
   assert.deepEqual((await scene()).organs[0].anchors, painted);
   await settled();
   await page.keyboard.press("Escape");
+  // One row of the list, which opens: each of its balls can be chosen, and all of them removed.
+  const row = page.locator(".objects .stroke"), balls = painted.length - anchors;
+  assert.match(await row.locator("summary").innerText(), new RegExp(`^${balls} balls of [\\d.]+ mm$`));
+  assert.equal(await row.locator("li button:visible").count(), 0);
+  await row.locator("summary").click();
+  assert.equal(await row.locator("li button:visible").count(), balls);
+  assert.deepEqual(await outOfReach(page), []);
+  assert.equal(await row.locator("li button[tabindex='0']").count(), 1);
+  await row.locator("li button[tabindex='0']").focus();
+  await page.keyboard.press("ArrowDown");
+  assert.ok(await row.locator("li button").nth(1).evaluate((control) => control === document.activeElement && control.tabIndex === 0));
   // Their handles are one stop of the tabulator. Arrow keys go from one to the next, until one is chosen: then they move it.
+  await row.locator("li button").nth(1).click();
+  await page.waitForSelector("#panel h2:has-text('anchor: ball')");
+  await picture(page, "author-stroke");
+  const chosen = page.locator(".handle[aria-pressed=true]");
+  await chosen.focus();
+  await page.keyboard.press("Escape");
+  assert.equal(await chosen.count(), 0);
   const stops = page.locator(".handle.anchor[tabindex='0']:visible");
   assert.equal(await stops.count(), 1);
   await stops.focus();
   const focused = () => page.evaluate(() => document.activeElement.textContent);
-  const begins = await focused();
   await page.keyboard.press("End");
   assert.equal(await focused(), `ball ${painted.length}`);
   await page.keyboard.press("ArrowLeft");
@@ -221,24 +238,9 @@ step("anchors are painted by the brush; a stroke is one step", async () => {
   assert.deepEqual(nudged.toSpliced(-2, 1), painted.toSpliced(-2, 1));
   await page.keyboard.press("Control+z");
   await page.keyboard.press("Escape");
-  assert.equal(await page.locator(".handle[aria-pressed=true]").count(), 0);
   await page.keyboard.press("Home");
-  assert.equal(await focused(), begins);
+  assert.equal(await focused(), `ball ${anchors + 1}`);
   assert.deepEqual((await scene()).organs[0].anchors, painted);
-  // One row of the list, which opens: each of its balls can be chosen, and all of them removed.
-  const row = page.locator(".objects .stroke"), balls = painted.length - anchors;
-  assert.match(await row.locator("summary").innerText(), new RegExp(`^${balls} balls of [\\d.]+ mm$`));
-  assert.equal(await row.locator("li button:visible").count(), 0);
-  await row.locator("summary").click();
-  assert.equal(await row.locator("li button:visible").count(), balls);
-  assert.deepEqual(await outOfReach(page), []);
-  assert.equal(await row.locator("li button[tabindex='0']").count(), 1);
-  await row.locator("li button[tabindex='0']").focus();
-  await page.keyboard.press("ArrowDown");
-  assert.ok(await row.locator("li button").nth(1).evaluate((control) => control === document.activeElement && control.tabIndex === 0));
-  await row.locator("li button").nth(1).click();
-  await page.waitForSelector("#panel h2:has-text('anchor: ball')");
-  await picture(page, "author-stroke");
   await row.locator("button:has-text('remove them all')").click();
   assert.equal((await scene()).organs[0].anchors?.length ?? 0, anchors);
   await page.keyboard.press("Control+z");
