@@ -101,13 +101,13 @@ std::optional<std::vector<double>> press(const Model& model, Vec3 place, Vec3 up
   return forces;
 }
 
-/// Mean and scatter over the places; none if a press fails or it was stopped.
+/// Mean and scatter over the places; none if a press fails or `next_press` stops it.
 std::optional<std::vector<FitRow>> press_all(const Model& model, const std::vector<Vec3>& places, Vec3 up,
                                              const rig::Site& site, double speed,
-                                             const std::function<bool()>& should_stop) {
+                                             const std::function<bool()>& next_press) {
   std::vector<std::vector<double>> all;
   for (const Vec3& place : places) {
-    if (should_stop && should_stop()) return std::nullopt;
+    if (!next_press()) return std::nullopt;
     const auto forces = press(model, place, up, speed);
     if (!forces) return std::nullopt;
     all.push_back(*forces);
@@ -125,7 +125,7 @@ std::optional<std::vector<FitRow>> press_all(const Model& model, const std::vect
 }  // namespace
 
 Result<StiffnessFit> fit_stiffness(const scenes::SceneSpec& scene, std::size_t organ, const FilledOrgan& filled,
-                                   const std::function<bool()>& should_stop) {
+                                   const std::function<bool()>& should_stop, const FitProgress& progress) {
   const scenes::OrganSpec& spec = scene.organs[organ];
   const std::string where = "organ " + spec.name;
   const std::vector<FilledOrgan> only{filled};
@@ -138,14 +138,20 @@ Result<StiffnessFit> fit_stiffness(const scenes::SceneSpec& scene, std::size_t o
   const std::vector<Vec3> places = places_at_top(first->model, filled, up);
   if (places.empty())
     return Error{where, "no outermost sphere can move, so nothing can be pressed", "anchor less of it"};
+  const std::int64_t most = (1 + kMostRounds) * std::int64_t(places.size());
+  std::int64_t begun = 0;
+  const auto next_press = [&] {
+    if (progress) progress(begun++, most);
+    return !(should_stop && should_stop());
+  };
   StiffnessFit fit;
-  std::optional<std::vector<FitRow>> rows = press_all(first->model, places, up, site, kFirstSpeed, should_stop);
+  std::optional<std::vector<FitRow>> rows = press_all(first->model, places, up, site, kFirstSpeed, next_press);
   // Force is proportional to the scale except for inertia, because mass is not scaled; the next round corrects this.
   for (int round = 0; round < kMostRounds && rows; ++round) {
     fit.factor *= rows->back().closed_form / rows->back().force;
     const Result<scenes::BuiltScene> scaled = build(fit.factor);
     if (!scaled) return scaled.errors();
-    rows = press_all(scaled->model, places, up, site, 0.5 * kFirstSpeed, should_stop);
+    rows = press_all(scaled->model, places, up, site, 0.5 * kFirstSpeed, next_press);
     if (rows && std::abs(rows->back().error()) <= kFitBound) break;
   }
   if (!rows && should_stop && should_stop()) return Error{where, "stopped", ""};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -28,6 +29,9 @@ struct StiffnessFit {
   std::vector<FitRow> rows;          ///< at 2, 4, ... 12 mm, with the scale applied
 };
 
+/// Gets the presses that are done, and the most that there may be.
+using FitProgress = std::function<void(std::int64_t done, std::int64_t most)>;
+
 /// Fits the stiffness scale of `organ` so that the mean force at 12 mm equals the CTPM force of the paper's Table 1 to
 /// 0.2 %. The ball of the calibration presses the top of the surface at nine places over one lattice cell, without
 /// gravity and viscosity, and so slowly that inertia is negligible; in a rig, it presses the highest sphere that can
@@ -35,7 +39,7 @@ struct StiffnessFit {
 /// it. The other depths show the error of the curve's shape. Errors: those of build_model(); nothing at the top can
 /// move; the ball loses the organ before 12 mm; a run fails; `should_stop`, if given, ended it.
 Result<StiffnessFit> fit_stiffness(const scenes::SceneSpec& scene, std::size_t organ, const FilledOrgan& filled,
-                                   const std::function<bool()>& should_stop = {});
+                                   const std::function<bool()>& should_stop = {}, const FitProgress& progress = {});
 
 /// Stores a fit in a scene's organ: its scale, and the contact point and ball for which it holds.
 void apply_fit(scenes::OrganSpec& organ, const StiffnessFit& fit);

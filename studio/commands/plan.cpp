@@ -128,20 +128,9 @@ std::string solver_of(const Model& model, const stepping::IntegratorChoice& choi
 Errors thin_parts_of(const loading::LoadedScene& scene) {
   Errors warnings;
   for (std::size_t i = 0; i < scene.organs.size(); ++i) {
-    const FilledOrgan& organ = scene.organs[i];
     const std::string at = "/organs/" + std::to_string(i) + "/fill";
-    const fidelity::ThinParts thin = fidelity::find_thin_parts(organ);
-    const double known = fidelity::kThicknessError * organ.spacing;
-    if (thin.spheres > 0)
-      warnings.push_back(scene.scene.places.error_at(
-          at,
-          std::to_string(thin.spheres) + " of " + std::to_string(organ.centre.size()) +
-              " spheres lie in tissue thinner than two spacings (" +
-              importers::mm_text(fidelity::kLeastSpacingsAcross * organ.spacing) +
-              "), which they cannot carry; the thinnest is " +
-              (thin.thinnest < known ? "less than " + importers::mm_text(known) : importers::mm_text(thin.thinnest)) +
-              " at " + importers::place_text(thin.place),
-          "a smaller radius_mm carries more of it"));
+    if (const std::string thin = fidelity::thin_parts_text(scene.organs[i]); !thin.empty())
+      warnings.push_back(scene.scene.places.error_at(at, thin, "a smaller radius_mm carries more of it"));
     for (const importers::Finding& finding : scene.reports[i].fill.findings)
       if (finding.code == "flat") warnings.push_back(scene.scene.places.error_at(at, finding.found, finding.remains));
   }

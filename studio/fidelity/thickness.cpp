@@ -6,6 +6,8 @@
 #include <limits>
 #include <map>
 
+#include "importers/text.h"
+
 namespace ctpm::fidelity {
 namespace {
 
@@ -105,6 +107,17 @@ ThinParts find_thin_parts(const FilledOrgan& organ) {
   }
   parts.share = thickness.empty() ? 0 : double(parts.spheres) / double(thickness.size());
   return parts;
+}
+
+std::string thin_parts_text(const FilledOrgan& organ) {
+  const ThinParts thin = find_thin_parts(organ);
+  if (thin.spheres == 0) return "";
+  const double known = kThicknessError * organ.spacing;
+  return std::to_string(thin.spheres) + " of " + std::to_string(organ.centre.size()) +
+         " spheres lie in tissue thinner than two spacings (" +
+         importers::mm_text(kLeastSpacingsAcross * organ.spacing) + "), which they cannot carry; the thinnest is " +
+         (thin.thinnest < known ? "less than " + importers::mm_text(known) : importers::mm_text(thin.thinnest)) +
+         " at " + importers::place_text(thin.place);
 }
 
 }  // namespace ctpm::fidelity

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/model/organ.h"
@@ -28,5 +29,8 @@ struct ThinParts {
   Vec3 place;           ///< of the thinnest [m]
 };
 ThinParts find_thin_parts(const FilledOrgan& organ);
+
+/// What is told of an organ's thin parts; empty: it has none.
+std::string thin_parts_text(const FilledOrgan& organ);
 
 }  // namespace ctpm::fidelity

@@ -7,7 +7,9 @@
 #include "scenes/presets.h"
 #include "scenes/scene_file.h"
 #include "scenes/schema.h"
+#include "studio/authoring/fit_scene.h"
 #include "studio/authoring/import_scene.h"
+#include "studio/loading/loaded_scene.h"
 #include "studio/output/files.h"
 #include "studio/server/call_table.h"
 #include "studio/server/naming_files.h"
@@ -120,6 +122,36 @@ Result<std::string> import_mesh(Parameters& parameters, const CallContext& conte
   json.key("least"), write_vector(json, least);
   json.key("most"), write_vector(json, most);
   return json.end_object().text();
+}
+
+/// The stiffness of an organ, fitted for its spheres as `fit` does it.
+Result<std::string> fit_organ(Parameters& parameters, const CallContext& context) {
+  const std::string path = parameters.text("path"), organ = parameters.text_if("organ").value_or("");
+  scenes::LoadOptions options;
+  options.text = parameters.text_if("text");
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  const Result<std::string> file = options.text ? context.folder.place(path) : context.folder.find(path);
+  if (!file) return file.errors();
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(*file, options, {}, context.should_stop);
+  if (!scene) return scene.errors();
+  const Result<authoring::SceneFit> fit = authoring::fit_scene(*scene, organ, context.should_stop, context.progress);
+  if (!fit) return fit.errors();
+  output::JsonWriter json;
+  json.begin_object()
+      .member("text", std::string_view(fit->text))
+      .member("stiffness_scale", fit->fit.scale)
+      .member("is_of_table", fit->is_of_table)
+      .key("rows")
+      .begin_list();
+  for (const authoring::FitRow& row : fit->fit.rows)
+    json.begin_object()
+        .member("depth_m", row.depth)
+        .member("force_n", row.force)
+        .member("scatter", row.scatter)
+        .member("closed_form_n", row.closed_form)
+        .member("error", row.error())
+        .end_object();
+  return json.end_list().end_object().text();
 }
 
 Result<std::string> show_schema(Parameters& parameters, const CallContext&) {

@@ -43,6 +43,7 @@ Result<std::string> show_scene(Parameters& parameters, const CallContext& contex
 Result<std::string> close_scene(Parameters& parameters, const CallContext& context);
 Result<std::string> hold_scenes(Parameters& parameters, const CallContext& context);
 Result<std::string> import_mesh(Parameters& parameters, const CallContext& context);
+Result<std::string> fit_organ(Parameters& parameters, const CallContext& context);
 Result<std::string> show_schema(Parameters& parameters, const CallContext& context);
 Result<std::string> measure_scene(Parameters& parameters, const CallContext& context);
 Result<std::string> measure_scatter(Parameters& parameters, const CallContext& context);

@@ -39,6 +39,7 @@ constexpr std::pair<const char*, Call> kCalls[] = {
     {"scene.close", close_scene},
     {"scene.hold", hold_scenes},
     {"scene.import", import_mesh},
+    {"scene.fit", fit_organ},
     {"scene.presets", list_presets},
     {"scene.schema", show_schema},
     {"scene.measure", measure_scene},

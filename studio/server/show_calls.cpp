@@ -7,6 +7,7 @@
 #include "core/model/errors.h"
 #include "core/model/state.h"
 #include "studio/fidelity/scene.h"
+#include "studio/fidelity/thickness.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/loading/oddities.h"
 #include "studio/loading/tick_time.h"
@@ -36,7 +37,8 @@ void write_organs(output::JsonWriter& json, const loading::LoadedScene& scene) {
     json.begin_object().member("spheres", scene.organs[i].centre.size()).member("anchored", anchored);
     const bool is_filled = !report.path.empty();  // a rig has no mesh
     json.member("report", is_filled ? importers::to_text(report) : std::string());
-    json.member("shape_error", is_filled ? importers::to_text(report.fill.shape) : std::string()).key("findings");
+    json.member("shape_error", is_filled ? importers::to_text(report.fill.shape) : std::string());
+    json.member("thin_parts", fidelity::thin_parts_text(scene.organs[i])).key("findings");
     write_findings(json, report.findings);
     json.end_object();
   }

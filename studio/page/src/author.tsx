@@ -324,7 +324,7 @@ function Toolbar({ scene, onSave, onLoad, onKeep, onTry, onCopied, error }: {
           </div>
         </div>
       )}
-      {doc.onDisk === "same" && doc.isOfEarlierVisit && <p class="earlier-visit warning" role="status">These are unsaved changes of an earlier visit: Undo goes back to the file, Save writes them into it.</p>}
+      {doc.onDisk === "same" && doc.isOfEarlierVisit && <p class="earlier-visit warning" role="status">These are unsaved changes of an earlier visit: Undo takes them back, Save writes them into the file.</p>}
     </>
   );
 }

@@ -3,7 +3,8 @@ import type { JSONPath } from "jsonc-parser";
 import * as three from "three";
 import { takenAlong } from "./belongings";
 import type { Connection } from "./connection";
-import { moveDraft, SceneDocument, takeDraft } from "./document";
+import { SceneDocument } from "./document";
+import { dropKept, moveKept } from "./drafts";
 import { type Item, itemsOf, listOf, type OrganPose, organPoses } from "./items";
 import type { Json } from "./json_edit";
 import { CallFailed, type Problem, type SceneView, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
@@ -24,6 +25,7 @@ export interface ShownOrgan {
   spheres: number;
   anchored: number;
   shape_error: string; // in the command's words; empty: a rig
+  thin_parts: string; // the same; empty: none is too thin for its spheres
   report: string;
   findings: Finding[];
 }
@@ -56,14 +58,15 @@ function middleOf(centres: Float32Array): three.Vector3 {
   return box.getCenter(new three.Vector3());
 }
 
-/** Scenes that were open keep their history while the page is there; those that were removed in it, too, by where they are. */
+/** Scenes that were open, those that were removed in this page by where they are. */
 const documents = new Map<string, SceneDocument>();
 let lastOpen = "";
 
 /** A scene's history and its draft go where its file goes. */
 function moveDocument(from: string, to: string): void {
-  moveDraft(from, to);
   const doc = documents.get(from);
+  doc?.keepHistory();
+  moveKept(from, to);
   documents.delete(from);
   if (doc) documents.set(to, doc);
   else documents.delete(to);
@@ -84,10 +87,9 @@ export class AuthorScene {
   private checked: Checked | null = null;
   private schema: Schema | null = null;
   private shownPart = "";
-  private wantsShow = false;
   private isUnchecked = false; // the text, as it is now
   private isUnshown = false; // and what it simulates
-  private running: AbortController | null = null; // a load
+  private running: { part: string; stop: AbortController } | null = null; // a load
   private measuring: AbortController | null = null;
   private timers: { check?: ReturnType<typeof setTimeout>; show?: ReturnType<typeof setTimeout> } = {};
   private received: (Shapes | Spheres | Triangles | WaitingFrame)[] = [];
@@ -143,6 +145,8 @@ export class AuthorScene {
 
   /** Shows no scene. */
   private close(): void {
+    for (const timer of Object.values(this.timers)) clearTimeout(timer);
+    this.endWork();
     if (lastOpen) this.letGo();
     lastOpen = "";
     this.doc = null, this.shown = null, this.error = null, this.tickTime = null, this.checked = null, this.shownPart = "";
@@ -159,18 +163,14 @@ export class AuthorScene {
     this.hold();
     if (this.doc !== doc) return;
     lastOpen = to, this.shownPart = ""; // the program shows it by its new name
+    this.endWork();
     this.changed();
   }
 
   /** A scene's file is below `folder` now. Its history and its draft go with it, for restored(). Whether it was open. */
   removed(path: string, folder: string): boolean {
     const wasOpen = this.doc?.path === path;
-    if (wasOpen) {
-      for (const timer of Object.values(this.timers)) clearTimeout(timer);
-      this.running?.abort();
-      this.measuring?.abort();
-      this.close();
-    }
+    if (wasOpen) this.close();
     moveDocument(path, `${folder}/${path}`);
     this.hold();
     this.onChange();
@@ -185,7 +185,7 @@ export class AuthorScene {
 
   /** It is gone for good. */
   deleted(path: string, folder: string): void {
-    takeDraft(`${folder}/${path}`);
+    dropKept(`${folder}/${path}`);
     documents.delete(`${folder}/${path}`);
   }
 
@@ -245,18 +245,32 @@ export class AuthorScene {
     clearTimeout(this.timers.check);
     this.isUnchecked = true;
     this.timers.check = setTimeout(() => void this.check(doc), kCheckAfter);
-    if (doc.value !== undefined && simulatedPart(doc.value) !== this.shownPart) {
-      // What is measured or loaded now is outdated.
-      this.measuring?.abort();
-      this.running?.abort();
-      clearTimeout(this.timers.show);
-      this.isUnshown = true;
+    clearTimeout(this.timers.show);
+    this.isUnshown = this.isOutdated;
+    if (this.isUnshown) {
+      this.endWork();
       this.timers.show = setTimeout(() => void this.load(), this.shown ? kShowAfter : 0);
-    } else {
-      clearTimeout(this.timers.show);
-      this.isUnshown = false;
-    }
+    } else this.goOn();
     this.onChange();
+  }
+
+  /** Whether what is shown, or is being loaded, is another scene than the text says by now. */
+  private get isOutdated(): boolean {
+    const { doc, running } = this, part = running && !running.stop.signal.aborted ? running.part : this.shownPart;
+    return doc?.value !== undefined && simulatedPart(doc.value) !== part;
+  }
+
+  /** What is measured or loaded now is outdated. */
+  private endWork(): void {
+    this.measuring?.abort();
+    this.running?.stop.abort();
+  }
+
+  /** Does what is to do once the text has stopped changing: a change that was taken back may have ended a load or a measurement. */
+  private goOn(): void {
+    if (!this.doc || this.running || this.isUnshown) return;
+    if (this.isOutdated) void this.load();
+    else if (this.stage && !this.tickTime && this.measuring?.signal.aborted) void this.measure();
   }
 
   private async check(doc: SceneDocument): Promise<void> {
@@ -280,16 +294,11 @@ export class AuthorScene {
 
   /** Loads the text as it is now. One load at a time: its pictures must not mix with those of another. */
   private async load(): Promise<void> {
-    if (this.running) {
-      this.wantsShow = true;
-      return;
-    }
-    const { doc } = this;
     this.isUnshown = false;
-    if (!doc) return;
-    const stop = (this.running = new AbortController());
-    const part = simulatedPart(doc.value);
-    const poses = organPoses(doc.value);
+    const { doc } = this;
+    if (!doc || this.running) return; // the end of the one before goes on
+    const stop = new AbortController(), part = simulatedPart(doc.value), poses = organPoses(doc.value);
+    this.running = { part, stop };
     this.isLoading = true, this.received = [], this.filled = null;
     this.onChange();
     const progress = (done: number, total: number) => {
@@ -305,9 +314,9 @@ export class AuthorScene {
       if (!stop.signal.aborted && this.doc === doc) this.error = failure as Error, this.shownPart = part;
     }
     this.running = null, this.isLoading = false;
+    this.goOn();
     this.underline();
     this.onChange();
-    if (this.wantsShow) this.wantsShow = false, void this.load();
   }
 
   private take(shown: ShownScene, part: string, poses: OrganPose[]): void {
@@ -350,10 +359,9 @@ export class AuthorScene {
   }
 
   dispose(): void {
-    clearTimeout(this.timers.check);
-    clearTimeout(this.timers.show);
-    this.running?.abort();
-    this.measuring?.abort();
+    for (const timer of Object.values(this.timers)) clearTimeout(timer);
+    this.doc = null; // nothing goes on
+    this.endWork();
     this.letGo();
     for (const doc of documents.values()) doc.commit(), (doc.onChange = () => this.hold()); // one may be being saved
   }

@@ -4,12 +4,14 @@ import { EditorState, Transaction } from "@codemirror/state";
 import { EditorView } from "@codemirror/view";
 import { findNodeAtLocation, getLocation, type JSONPath, parseTree } from "jsonc-parser";
 import type { Connection } from "./connection";
+import { dropDraft, type FileText, putDraft, putHistory, readDraft, readHistory } from "./drafts";
 import { applied, type Change, type Json, parseJson, removeValue, setValue } from "./json_edit";
-import { editorOf, gesture, rangeOf, underlined } from "./json_editor";
+import { editorOf, gesture, keptHistory, rangeOf, underlined, withHistory } from "./json_editor";
 import { CallFailed, type Problem } from "./protocol";
 import type { Schema } from "./scene_schema";
 
 const kOneStep = 500; // changes of the same values that follow each other within it are one step [ms]
+const kKeepAfter = 300; // without a change the history is kept for the next visit [ms]
 
 /** What became of the file since it was read, by somebody else's hand. */
 export type OnDisk = "same" | "changed" | "gone";
@@ -23,7 +25,8 @@ export class SceneDocument {
   private gestures = 0; // begun so far
   private last: { what: string; text: string; at: number } | null = null; // the change that preview() made last
   onDisk: OnDisk = "same";
-  private drafted: string | null = null; // the draft that it began with, one step after the file
+  private drafted: string | null = null; // the draft that it began with
+  private keeping: ReturnType<typeof setTimeout> | null = null; // until the history is kept; null: it is
   private valid: Json | undefined;
   private parsed: { text: string; value: Json | undefined } | null = null;
 
@@ -32,23 +35,26 @@ export class SceneDocument {
     // In a root of its own, the editor's styles are objects and not elements, which the page's security policy refuses.
     const root = this.host.attachShadow({ mode: "open" });
     const listen = EditorView.updateListener.of((update) => {
-      if (update.docChanged) this.keepDraft(), this.onChange();
+      if (update.docChanged) this.remember(), this.onChange();
       if (update.selectionSet && update.transactions.some((t) => t.isUserEvent("select.pointer")))
         this.onPlace(getLocation(this.text, update.state.selection.main.head).path);
     });
     const extensions = editorOf("The text of the scene", schema, [listen]);
-    this.view = new EditorView({ state: EditorState.create({ doc: saved, extensions }), root, parent: root });
-    if (text !== saved) this.drafted = text, this.setText(text, ++this.gestures); // a draft can be undone
+    const state = withHistory(readHistory(path), text, text !== saved, extensions) ?? EditorState.create({ doc: saved, extensions });
+    this.view = new EditorView({ state, root, parent: root });
+    this.setText(text, ++this.gestures); // without its history a draft is one step after the file
+    if (text !== saved) this.drafted = text;
+    else dropDraft(path);
+    addEventListener("pagehide", () => this.keepHistory());
   }
 
   /** Reads a scene and the draft of it that this browser kept. A draft of another text than the file has by now stays one
       of that text, so that it is not written over the file unasked. */
   static async open(connection: Connection, path: string, schema: () => Schema | null): Promise<SceneDocument> {
-    const file = await connection.call<{ text: string; revision: string }>("scene.read", { path });
-    const draft = localStorage.getItem(draftKey(path)), kept = localStorage.getItem(draftedKey(path));
-    const drafted = draft !== null && draft !== file.text && kept !== null ? (JSON.parse(kept) as typeof file) : file;
-    const made = new SceneDocument(connection, path, drafted.text, drafted.revision, draft ?? file.text, schema);
-    made.onDisk = drafted.revision === file.revision ? "same" : "changed";
+    const file = await readText(connection, path), draft = readDraft(path);
+    const began = draft?.file && draft.text !== file.text ? draft.file : file;
+    const made = new SceneDocument(connection, path, began.text, began.revision, draft?.text ?? file.text, schema);
+    made.onDisk = began.revision === file.revision ? "same" : "changed";
     return made;
   }
 
@@ -80,7 +86,7 @@ export class SceneDocument {
   get isChanged(): boolean {
     return this.text !== this.saved;
   }
-  /** Whether the text is the draft that it began with, so that one undo leads back to the file. */
+  /** Whether the text is the draft that it began with. */
   get isOfEarlierVisit(): boolean {
     return this.isChanged && this.text === this.drafted;
   }
@@ -130,10 +136,7 @@ export class SceneDocument {
     this.commit();
     const { text } = this;
     if (text === this.saved) return;
-    this.revision = (await this.connection.call<{ revision: string }>("scene.write", { path: this.path, text, revision: this.revision })).revision;
-    this.saved = text, this.onDisk = "same";
-    this.keepDraft();
-    this.onChange();
+    this.took({ text, revision: (await this.connection.call<{ revision: string }>("scene.write", { path: this.path, text, revision: this.revision })).revision });
   }
 
   /** Writes the text as it is now into a file that is not there yet; this one stays as it is. */
@@ -143,33 +146,39 @@ export class SceneDocument {
 
   /** Goes back to what the file says now; undo brings the changes back. */
   async reread(): Promise<void> {
-    const file = await this.connection.call<{ text: string; revision: string }>("scene.read", { path: this.path });
-    this.saved = file.text, this.revision = file.revision, this.before = this.last = this.drafted = null, this.onDisk = "same";
+    const file = await readText(this.connection, this.path);
+    this.before = this.last = this.drafted = null;
     this.setText(file.text, ++this.gestures);
-    this.keepDraft();
-    this.onChange();
+    this.took(file);
   }
 
   /** Stays with this text though the file is another one by now: the next save writes over that. */
   async keep(): Promise<void> {
     const file = await this.readFile();
-    this.saved = file?.text ?? "", this.revision = file?.revision ?? kNoFile, this.drafted = null, this.onDisk = "same";
-    this.keepDraft();
-    this.onChange();
+    this.drafted = null;
+    this.took(file ?? { text: "", revision: kNoFile });
   }
 
   /** Looks whether the file is another one than was read or written here, or gone. */
   async lookOnDisk(): Promise<void> {
     const { revision, onDisk, path } = this, file = await this.readFile();
     if (revision !== this.revision || path !== this.path) return; // it was saved, read or renamed meanwhile
+    if (file && file.revision !== revision && file.text === this.text) return this.took(file); // somebody else wrote the same
     this.onDisk = (file?.revision ?? kNoFile) === revision ? "same" : file ? "changed" : "gone";
     if (this.onDisk !== onDisk) this.onChange();
   }
 
+  /** From now on changes are those to this file. */
+  private took(file: FileText): void {
+    this.saved = file.text, this.revision = file.revision, this.onDisk = "same";
+    this.remember();
+    this.onChange();
+  }
+
   /** The file as it is now; null: there is none. */
-  private async readFile(): Promise<{ text: string; revision: string } | null> {
+  private async readFile(): Promise<FileText | null> {
     try {
-      return await this.connection.call<{ text: string; revision: string }>("scene.read", { path: this.path });
+      return await readText(this.connection, this.path);
     } catch (failure) {
       if (failure instanceof CallFailed) return null;
       throw failure;
@@ -212,51 +221,41 @@ export class SceneDocument {
     });
   }
 
-  private keepDraft(): void {
-    const { text, path } = this;
-    if (text === this.saved) takeDraft(path);
-    else putDraft(path, { text, drafted: JSON.stringify({ text: this.saved, revision: this.revision }) });
+  /** Keeps the text as a draft at once, while it is none of the file's, and its history soon. */
+  private remember(): void {
+    const { text, path, saved, revision } = this;
+    if (text === saved) dropDraft(path);
+    else putDraft(path, text, { text: saved, revision });
+    clearTimeout(this.keeping ?? undefined);
+    this.keeping = setTimeout(() => this.keepHistory(), kKeepAfter);
   }
-}
 
-/** What is kept of a scene that was not saved. */
-interface Draft {
-  text: string;
-  drafted: string | null; // the file that it began with
-}
-
-/** Takes a draft out of the browser's storage; null: there is none. */
-export function takeDraft(path: string): Draft | null {
-  const text = localStorage.getItem(draftKey(path)), drafted = localStorage.getItem(draftedKey(path));
-  for (const key of [draftKey(path), draftedKey(path)]) localStorage.removeItem(key);
-  return text === null ? null : { text, drafted };
-}
-
-function putDraft(path: string, draft: Draft | null): void {
-  if (!draft) return;
-  if (draft.drafted !== null) localStorage.setItem(draftedKey(path), draft.drafted);
-  localStorage.setItem(draftKey(path), draft.text);
-}
-
-/** A draft goes where its file goes; one that was left there by another file is none of it. */
-export function moveDraft(from: string, to: string): void {
-  takeDraft(to);
-  putDraft(to, takeDraft(from));
-}
-
-export function hasDraft(path: string): boolean {
-  return localStorage.getItem(draftKey(path)) !== null;
+  /** Keeps the history, unless it is kept as it is. */
+  keepHistory(): void {
+    if (this.keeping === null) return;
+    clearTimeout(this.keeping);
+    this.keeping = null;
+    putHistory(this.path, keptHistory(this.view.state));
+  }
 }
 
 const kNoFile = "none"; // revision of a file that is not there
 
-function draftKey(path: string): string {
-  return `ctpm.draft:${path}`;
+/** A scene's file as the editor has it: each of its lines ends with the same character. */
+async function readText(connection: Connection, path: string): Promise<FileText> {
+  const { text, revision } = await connection.call<FileText>("scene.read", { path });
+  return { text: text.replace(/\r\n?/g, "\n"), revision };
 }
 
-/** Of the file that a draft began with: its text and revision. */
-function draftedKey(path: string): string {
-  return `ctpm.drafted:${path}`;
+/** Drops drafts that say what their files say by now. Whether there were any. */
+export async function dropNeedlessDrafts(connection: Connection, paths: string[]): Promise<boolean> {
+  const isNeedless = async (path: string) => {
+    const file = await readText(connection, path).catch(() => null);
+    const isSame = file !== null && readDraft(path)?.text === file.text;
+    if (isSame) dropDraft(path);
+    return isSame;
+  };
+  return (await Promise.all(paths.map(isNeedless))).includes(true);
 }
 
 function changed(text: string, values: [JSONPath, Json | undefined][]): string {

@@ -1,6 +1,7 @@
 import { useRef, useState } from "preact/hooks";
-import type { AuthorScene } from "./author_scene";
+import type { AuthorScene, ShownOrgan } from "./author_scene";
 import type { Connection } from "./connection";
+import { Fit } from "./fit";
 import { listOf } from "./items";
 import { findJson, parseJson } from "./json_edit";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
@@ -27,14 +28,14 @@ export function Filling({ connection, scene, chosen }: { connection: Connection;
   const sorted = organs.sort(([, a], [, b]) => Number(b === chosen) - Number(a === chosen)); // the one that is worked on comes first
   return (
     <>
-      {sorted.map(([organ, i]) => organ.rig ? null : <OrganFilling key={i} scene={scene} organ={i} name={String(organ.name ?? `organ ${i + 1}`)} />)}
+      {sorted.map(([organ, i]) => organ.rig ? null : <OrganFilling key={`${scene.doc?.path} ${i}`} connection={connection} scene={scene} organ={i} name={String(organ.name ?? `organ ${i + 1}`)} />)}
       <Cost scene={scene} />
       <ScatterOf connection={connection} scene={scene} />
     </>
   );
 }
 
-function OrganFilling({ scene, organ, name }: { scene: AuthorScene; organ: number; name: string }) {
+function OrganFilling({ connection, scene, organ, name }: { connection: Connection; scene: AuthorScene; organ: number; name: string }) {
   const doc = scene.doc!, path = ["organs", organ, "fill"];
   const number = (key: string, otherwise: number) => {
     const value = findJson(doc.lastValue, [...path, key]);
@@ -53,7 +54,6 @@ function OrganFilling({ scene, organ, name }: { scene: AuthorScene; organ: numbe
     const exact = least * (most / least) ** (step / steps), wanted = Math.round(exact * 20) / 20;
     doc.preview([[[...path, "radius_mm"], wanted], [[...path, "gap_mm"], Math.round(wanted * ratio.current * 100) / 100]]);
   };
-  const fitted = findJson(doc.value, ["organs", organ, "material", "fitted_for", "sphere_radius_mm"]);
   const layers = new Map<number, number>();
   for (const layer of spheres?.layer ?? []) layers.set(layer, (layers.get(layer) ?? 0) + 1);
   return (
@@ -64,7 +64,7 @@ function OrganFilling({ scene, organ, name }: { scene: AuthorScene; organ: numbe
       </label>
       <div class="numbers" aria-busy={scene.isRefilling}>
         {shown && <Readings rows={[["spheres", String(shown.spheres)], ["never move", String(shown.anchored)]]} />}
-        {shown?.shape_error && <p class="hint">Shape error, <span class="shape" role="status">{shown.shape_error}</span>. Tools touch the mesh's own surface, which the spheres carry.</p>}
+        {shown?.shape_error && <Shape shown={shown} apart={Number((2 * radius + gap).toPrecision(4))} />}
         <ul class="layers" aria-label="Spheres by layer">
           {[...layers].sort(([a], [b]) => a - b).map(([layer, count]) => (
             <li key={layer}><i style={{ background: cssOf(view?.organs[organ]?.layer_colours[layer - 1]) }} />layer {layer}<span class="number">{count}</span></li>
@@ -72,13 +72,21 @@ function OrganFilling({ scene, organ, name }: { scene: AuthorScene; organ: numbe
           {shown && shown.anchored > 0 && <li key="anchored"><i style={{ background: kAnchored }} />never moves</li>}
         </ul>
       </div>
-      {typeof fitted === "number" && fitted !== radius && (
-        <>
-          <p class="warning">The stiffness was fitted with spheres of {fitted} mm.</p>
-          <ShownCommand text={command("fit", doc.path)} />
-        </>
-      )}
+      <Fit connection={connection} scene={scene} organ={organ} name={name} radius={radius} />
     </Section>
+  );
+}
+
+/** How far the spheres follow the organ's shape, and whether that is enough. */
+function Shape({ shown, apart }: { shown: ShownOrgan; apart: number }) {
+  return (
+    <>
+      <p class="hint">Shape error, <span class="shape" role="status">{shown.shape_error}</span>.</p>
+      {shown.thin_parts ? <p class="warning fine-enough" role="status">Too coarse where the organ is thin: {shown.thin_parts}. Take a smaller radius if these parts are to be touched or cut.</p>
+        : <p class="good fine-enough" role="status">Fine enough: the organ is nowhere thinner than two spacings ({Number((2 * apart).toPrecision(4))} mm).</p>}
+      <p class="hint">The spheres stand on a lattice, {apart} mm apart, so that some are outside the skin and some end below it. About that much, for 95 %, is usual and no mistake: each weighs and holds as much
+        as there is tissue around it, and tools touch the skin itself, which the spheres carry. With a smaller radius they follow the shape more closely, and cost more time.</p>
+    </>
   );
 }
 

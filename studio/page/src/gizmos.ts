@@ -6,6 +6,7 @@ import { type Item, placed, sized, turned } from "./items";
 import { shapeOf } from "./item_shapes";
 import type { Json } from "./json_edit";
 import { apart, type Label } from "./labels";
+import { alongRow, rowsOf } from "./rows";
 import type { StageScene } from "./stage_scene";
 import type { Viewer } from "./viewer";
 
@@ -41,6 +42,8 @@ export class Gizmos {
   private readonly pivot = new three.Object3D();
   private readonly controls: TransformControls;
   private readonly handles = new Map<string, HTMLButtonElement>();
+  private rows: Item[][] = []; // of balls whose handles are one stop of the tabulator
+  private stop = ""; // the ball that had the keyboard last, or was chosen
   private grabbed = ""; // handle that is dragged
   private begun: Item | null = null; // what is dragged, as it was before
   private pressed: { x: number; y: number } | null = null; // a press on the picture that may become a click
@@ -72,7 +75,9 @@ export class Gizmos {
       this.stage = stage;
       if (stage) this.size = new three.Vector3(...stage.view.most).distanceTo(new three.Vector3(...stage.view.least));
     }
+    this.stop = selected || this.stop;
     this.items = items, this.selected = selected, this.mode = mode;
+    this.rows = rowsOf(items).filter((row) => row.length > 1);
     this.update();
   }
 
@@ -147,10 +152,46 @@ export class Gizmos {
       }
       const item = this.item(key)!;
       handle.className = `handle ${item.kind}`;
+      handle.tabIndex = 0;
       handle.setAttribute("aria-pressed", String(key === this.selected));
       handle.firstElementChild!.textContent = item.name;
-      handle.setAttribute("aria-label", `${item.kind} ${item.name}: drag it, or move it with the arrow keys`);
+      handle.setAttribute("aria-label", `${item.kind} ${item.name}: ${this.keysOf(item)}`);
     }
+  }
+
+  /** What keys do on a handle, for whoever hears it. */
+  private keysOf({ key }: Item): string {
+    const row = this.rowOf(key), isChosen = key === this.selected;
+    if (row && !isChosen) return `one of ${row.length}; arrow keys go to the others, Enter chooses it`;
+    return `drag it, or move it with the arrow keys${isChosen ? "; Escape lets it go" : ""}`;
+  }
+
+  private rowOf(key: string): Item[] | undefined {
+    return this.rows.find((row) => row.some((item) => item.key === key));
+  }
+
+  /** One handle of each row is a stop of the tabulator, if one can be seen. */
+  private layStops(): void {
+    for (const row of this.rows) {
+      const seen = row.filter(({ key }) => this.handles.get(key)?.style.display === "");
+      const stop = seen.find(({ key }) => key === this.stop) ?? seen[0];
+      for (const item of row) this.handles.get(item.key)?.setAttribute("tabindex", item === stop ? "0" : "-1");
+    }
+  }
+
+  /** Arrow keys go along a row, until one of it is chosen: then they move that. Whether the key was of this use. */
+  private goAlong(key: string, event: KeyboardEvent): boolean {
+    const row = this.rowOf(key);
+    if (!row || key === this.selected) return false;
+    const next = alongRow(event.key, row.findIndex((item) => item.key === key), row.length);
+    if (next === null) return false;
+    event.preventDefault();
+    this.stop = row[next].key;
+    const handle = this.handles.get(this.stop)!;
+    handle.style.display = ""; // it may be beyond the picture
+    handle.focus();
+    this.layHandles();
+    return true;
   }
 
   private layHandles(): void {
@@ -181,6 +222,7 @@ export class Gizmos {
     }
     const downs = apart(named.map(([, label]) => label), height);
     named.forEach(([name], i) => (name.style.transform = downs[i] ? `translateY(${downs[i].toFixed(1)}px)` : ""));
+    this.layStops();
   }
 
   /** A click on an organ's surface selects the organ; arrow keys move what is selected. */
@@ -222,7 +264,10 @@ export class Gizmos {
     handle.addEventListener("lostpointercapture", end);
     // The tabulator passes without choosing: what was chosen keeps its numbers on the way to them.
     handle.addEventListener("click", () => this.onSelect(key));
-    handle.addEventListener("keydown", (event) => this.nudge(key, event));
+    handle.addEventListener("keydown", (event) => {
+      if (event.key === "Escape" && key === this.selected) this.onSelect("");
+      else if (!this.goAlong(key, event)) this.nudge(key, event);
+    });
   }
 
   /** Moves an item to where the pointer is: onto the surface, or in a plane that faces the viewer. */

@@ -146,3 +146,13 @@ export function findJson(value: Json | undefined, path: JSONPath): Json | undefi
   }
   return value;
 }
+
+/** The values below a path that are others afterwards; undefined: one that is gone. */
+export function differences(before: Json | undefined, after: Json | undefined, path: JSONPath): [JSONPath, Json | undefined][] {
+  if (JSON.stringify(before) === JSON.stringify(after)) return [];
+  const isDeep = (value: Json | undefined) => typeof value === "object" && value !== null;
+  const isAlike = isDeep(before) && isDeep(after) && Array.isArray(before) === Array.isArray(after);
+  if (!isAlike || (Array.isArray(before) && (before.length !== (after as Json[]).length || !before.some(isDeep)))) return [[path, after]];
+  const keys = Array.isArray(before) ? [...before.keys()] : [...new Set([...Object.keys(before!), ...Object.keys(after!)])];
+  return keys.flatMap((key) => differences(findJson(before, [key]), findJson(after, [key]), [...path, key]));
+}

@@ -1,6 +1,6 @@
 // An editor of scene text: colours, completion from the schema, underlined errors, history.
 import { autocompletion, closeBrackets, closeBracketsKeymap, type Completion, type CompletionContext, completionKeymap, type CompletionResult } from "@codemirror/autocomplete";
-import { defaultKeymap, history, historyKeymap } from "@codemirror/commands";
+import { defaultKeymap, history, historyField, historyKeymap, undoDepth } from "@codemirror/commands";
 import { json } from "@codemirror/lang-json";
 import { bracketMatching, HighlightStyle, syntaxHighlighting } from "@codemirror/language";
 import { type Diagnostic, setDiagnostics } from "@codemirror/lint";
@@ -11,6 +11,7 @@ import { type Problem, problemText } from "./protocol";
 import { offersAt, type Schema } from "./scene_schema";
 
 const kUndoSteps = 500;
+const kKeptSteps = 200, kMostKept = 500_000; // of them, for another visit, and of its text: the browser's storage is small [characters]
 const kTogether = 500; // between two keys that are undone together [ms]
 
 /** Of changes that belong to one drag, whose number it is: they are one step of the history. */
@@ -52,6 +53,33 @@ function steps(): Extension {
     return own !== undefined || before.gesture !== undefined ? own === before.gesture : isAdjacent && Date.now() - before.time < kTogether;
   };
   return [history({ minDepth: kUndoSteps, newGroupDelay: Infinity, joinToEvent }), remember];
+}
+
+interface KeptState {
+  doc: string;
+  history: { done: unknown[]; undone: unknown[] };
+}
+
+/** The newest steps of the history as text, as many as fit; null: not one does. */
+export function keptHistory(state: EditorState): string | null {
+  const { history: all, ...rest } = state.toJSON({ history: historyField }) as KeptState;
+  for (let steps = kKeptSteps; steps >= 1; steps = Math.floor(steps / 2)) {
+    const text = JSON.stringify({ ...rest, history: { done: all.done.slice(-steps), undone: all.undone.slice(-steps) } });
+    if (text.length <= kMostKept) return text;
+  }
+  return null;
+}
+
+/** A state that goes on with a history that keptHistory() made; null: it ends in another text, or nothing `hasToUndo` what led there. */
+export function withHistory(kept: string | null, text: string, hasToUndo: boolean, extensions: Extension[]): EditorState | null {
+  try {
+    const json = JSON.parse(kept ?? "null") as KeptState | null;
+    if (json?.doc !== text) return null;
+    const state = EditorState.fromJSON(json, { extensions }, { history: historyField });
+    return hasToUndo && undoDepth(state) === 0 ? null : state;
+  } catch {
+    return null; // it is of another version of the page
+  }
 }
 
 /** Everything an editor of a scene has. `schema` may not be known yet. */

@@ -60,6 +60,12 @@ function App() {
   const [place, setPlace] = useState<Place>(start.place);
   const list = () => void connection?.call<Listing>("folder.list").then(setListing, () => {});
   useEffect(list, [connection, room]);
+  // A command may have made files since the window was left, or while it is only looked at.
+  useEffect(() => (addEventListener("focus", list), () => removeEventListener("focus", list)), [connection]);
+  const listAnew = ({ target, relatedTarget }: FocusEvent) => {
+    const opened = (target as Element).closest("select, .list");
+    if (opened && !opened.contains(relatedTarget as Node | null)) list();
+  };
   const reviewed = useRef<Place>({}); // what was in review last, for whoever looks into another room
   const keepReviewed = (there: Place) => (reviewed.current = there, writePlace("review", there));
   const show = (to: Room, there: Place) => {
@@ -114,7 +120,7 @@ function App() {
           leaving.go();
         }} />
       )}
-      <main>
+      <main onFocusIn={listAnew}>
         {isClosed && otherVersion ? (
           <Empty title="The program was updated">
             <p>This page was loaded from another version of it: {otherVersion}. Scenes that were not saved are kept as drafts.</p>

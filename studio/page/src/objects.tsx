@@ -1,4 +1,4 @@
-import { useState } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import * as three from "three";
 import type { JSONPath } from "jsonc-parser";
 import type { AuthorScene } from "./author_scene";
@@ -6,9 +6,9 @@ import { onSurface } from "./gizmos";
 import { cameraValues } from "./inspector";
 import { freeName, type Item, type ItemKind, itemsOf, listOf, mm, mmVector } from "./items";
 import { applied, type Json, parseJson, setValue } from "./json_edit";
+import { alongRow, rowsOf } from "./rows";
 import type { Viewer } from "./viewer";
 
-const kStroke = 3; // balls that are shown as one row
 const kTitles: [ItemKind, string][] = [["organ", "Organs"], ["anchor", "Anchors"], ["tool", "Tools"], ["probe", "Probes"], ["camera", "Cameras"]];
 
 /** What can be added, and what it begins as. */
@@ -62,35 +62,32 @@ export function addItem(scene: AuthorScene, viewer: Viewer, kind: Exclude<ItemKi
   return path.join("/");
 }
 
-/** Items row by row: balls of one size that follow each other in an organ, as the brush leaves them, share one. */
-function rowsOf(items: Item[]): Item[][] {
-  const rows: Item[][] = [];
-  for (const item of items) {
-    const last = rows.at(-1)?.[0];
-    const goesOn = last?.shape === "sphere" && item.shape === "sphere" && last.path[1] === item.path[1] && last.size.x === item.size.x;
-    if (goesOn) rows.at(-1)!.push(item);
-    else rows.push([item]);
-  }
-  return rows.flatMap((row) => (row.length < kStroke ? row.map((item) => [item]) : [row]));
-}
-
-function Row({ item, selected, onSelect }: { item: Item; selected: string; onSelect: (key: string) => void }) {
+/** `isStop`: the tabulator comes to it; otherwise arrow keys do, from another one of its row. */
+function Row({ item, selected, isStop = true, onSelect }: { item: Item; selected: string; isStop?: boolean; onSelect: (key: string) => void }) {
   return (
     <li>
-      <button type="button" aria-current={item.key === selected} title={item.name} onClick={() => onSelect(item.key)}><i class={`dot ${item.kind}`} /><span>{item.name}</span></button>
+      <button type="button" tabIndex={isStop ? 0 : -1} aria-current={item.key === selected} title={item.name} onClick={() => onSelect(item.key)}><i class={`dot ${item.kind}`} /><span>{item.name}</span></button>
     </li>
   );
 }
 
-/** What was painted: many balls in one row, which opens. */
+/** What was painted: many balls in one row, which opens. Arrow keys go from one to the next. */
 function Stroke({ balls, selected, onSelect, onRemove }: { balls: Item[]; selected: string; onSelect: (key: string) => void; onRemove: () => void }) {
-  const [isOpen, setOpen] = useState(false);
-  const name = `${balls.length} balls of ${mm(balls[0].size.x)} mm`;
+  const chosen = balls.findIndex(({ key }) => key === selected);
+  const [isOpen, setOpen] = useState(false), [stop, setStop] = useState(0);
+  useEffect(() => void (chosen >= 0 && setStop(chosen)), [chosen]);
+  const name = `${balls.length} balls of ${mm(balls[0].size.x)} mm`, last = balls.length - 1;
   return (
     <li class="stroke">
-      <details open={isOpen || balls.some(({ key }) => key === selected)} onToggle={(e) => setOpen(e.currentTarget.open)}>
+      <details open={isOpen || chosen >= 0} onToggle={(e) => setOpen(e.currentTarget.open)}>
         <summary><i class="dot anchor" /><span>{name}</span></summary>
-        <ul>{balls.map((ball) => <Row key={ball.key} item={ball} selected={selected} onSelect={onSelect} />)}</ul>
+        <ul aria-label={`${name}: arrow keys go from one to the next`} onKeyDown={(e) => {
+          const next = alongRow(e.key, Math.min(stop, last), balls.length);
+          if (next === null) return;
+          e.preventDefault();
+          setStop(next);
+          e.currentTarget.querySelectorAll("button")[next].focus();
+        }}>{balls.map((ball, i) => <Row key={ball.key} item={ball} selected={selected} isStop={i === Math.min(stop, last)} onSelect={onSelect} />)}</ul>
         <button type="button" class="quiet" aria-label={`Remove ${name}`} onClick={onRemove}>remove them all</button>
       </details>
     </li>

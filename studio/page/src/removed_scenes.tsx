@@ -1,7 +1,7 @@
 // Scenes that were removed: at the end of the list, until they are brought back or deleted for good.
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
-import { hasDraft } from "./document";
+import { hasDraft } from "./drafts";
 import { Problems, useFocusBack } from "./parts";
 import type { Listing } from "./protocol";
 import { bytes, sceneName } from "./text";

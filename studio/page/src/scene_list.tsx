@@ -2,7 +2,8 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { AuthorScene } from "./author_scene";
 import type { Connection } from "./connection";
-import { hasDraft } from "./document";
+import { dropNeedlessDrafts } from "./document";
+import { hasDraft } from "./drafts";
 import { parseJson } from "./json_edit";
 import { Problems, useFocusBack } from "./parts";
 import type { Listing, Removal, SceneOfSession } from "./protocol";
@@ -28,8 +29,11 @@ export function SceneList({ connection, listing, scene, onOpen, onChanged }: {
   const [chosen, setChosen] = useState(""); // to be renamed or removed; empty: none
   const [gone, setGone] = useState(goneHere);
   const [error, setError] = useState<Error | null>(null); // of what comes back
+  const [, setVersion] = useState(0);
   const path = scene?.doc?.path ?? "";
   useEffect(() => void (goneHere = gone), [gone]);
+  // A file may have been written meanwhile, by a command or in another tab, as its draft is.
+  useEffect(() => void dropNeedlessDrafts(connection, listing.scenes.map((entry) => entry.path).filter(hasDraft)).then((any) => any && setVersion((v) => v + 1)), [connection, listing]);
 
   const rename = (to: string, rewritten: string[]) => {
     scene?.renamed(chosen, to);

@@ -29,12 +29,26 @@ export function firstCamera(view: SceneView): CameraView | undefined {
 
 const kLookAgain = 2; // whether a picture is done [ms]
 const kLongerThanFrames = 25; // a picture that took so long is followed at once: it would wait for half a frame of the screen [ms]
+const kNearPole = 0.01; // no view is nearer to straight down or up, where nothing says what is up in the picture [rad]
 const kStandsStill = 400; // a picture, if no other one follows for that long [ms]
 
 /** What keys do to a view: right and up [rad], times as far away. */
 export const kTurns: { [key: string]: [number, number, number] } = {
   a: [-0.1, 0, 1], d: [0.1, 0, 1], w: [0, 0.1, 1], s: [0, -0.1, 1], "+": [0, 0, 0.9], "=": [0, 0, 0.9], "-": [0, 0, 1 / 0.9],
 };
+
+/** Turns what is up into y. */
+function uprightOf(up: three.Vector3): three.Quaternion {
+  return new three.Quaternion().setFromUnitVectors(up.clone().normalize(), new three.Vector3(0, 1, 0));
+}
+
+/** The mouse turns the view about what is up, and not about what was up when three.js made its controls, the only time that
+    they ask. A view that passes the pole of another axis spins. */
+function turnAbout(up: three.Vector3, controls: OrbitControls): void {
+  const axis = controls as unknown as { _quat: three.Quaternion; _quatInverse: three.Quaternion };
+  axis._quat.copy(uprightOf(up));
+  axis._quatInverse.copy(axis._quat).invert();
+}
 
 /** Draws up to two scenes side by side with one camera, whenever something changed. */
 export class Viewer {
@@ -65,6 +79,7 @@ export class Viewer {
     this.renderer.autoClear = false;
     this.picture = new Picture(this.renderer, this.quality.smoothsEdges);
     this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.minPolarAngle = kNearPole, this.controls.maxPolarAngle = Math.PI - kNearPole;
     this.controls.addEventListener("start", () => (this.isTurning = true));
     this.controls.addEventListener("end", () => (this.isTurning = false));
     this.controls.addEventListener("change", () => {
@@ -90,6 +105,7 @@ export class Viewer {
   look(camera: CameraView): void {
     if (this.isTurning) return; // a hand has it
     this.camera.up.set(...camera.up);
+    turnAbout(this.camera.up, this.controls);
     this.camera.position.set(...camera.eye);
     this.fieldOfView = camera.fov_deg;
     this.controls.target.set(...camera.target);
@@ -106,10 +122,9 @@ export class Viewer {
   /** Turns the camera about its target, to the right and up [rad], and moves it so many times as far away. */
   turn(right: number, up: number, farther: number): void {
     const { camera, controls } = this;
-    const upright = new three.Quaternion().setFromUnitVectors(camera.up, new three.Vector3(0, 1, 0));
+    const upright = uprightOf(camera.up);
     const away = new three.Spherical().setFromVector3(camera.position.clone().sub(controls.target).applyQuaternion(upright));
-    away.theta += right, away.phi -= up, away.radius *= farther;
-    away.makeSafe();
+    away.theta += right, away.phi = three.MathUtils.clamp(away.phi - up, kNearPole, Math.PI - kNearPole), away.radius *= farther;
     camera.position.setFromSpherical(away).applyQuaternion(upright.invert()).add(controls.target);
     controls.update();
     this.onTurn();

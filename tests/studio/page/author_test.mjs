@@ -1,6 +1,6 @@
 // An author in a browser: author_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
@@ -266,7 +266,10 @@ step("the slider fills again: spheres, time per tick, scatter", async () => {
   await save();
   assert.equal(Number(/(\d+) spheres/.exec(ctpm(folder, "check", kScene).out)[1]), spheres);
   console.log(`author: ${spheres} spheres, ${time} ms a tick at rest`);
-  const shape = await page.locator("#panel .shape").first().textContent(), plan = ctpm(folder, "plan", kScene, "--quick").out;
+  const shape = await page.locator("#panel .shape").first().textContent(), { out: plan, err: warned } = ctpm(folder, "plan", kScene, "--quick");
+  const { radius_mm, gap_mm } = (await scene()).organs[0].fill;
+  assert.doesNotMatch(warned, /tissue thinner/);
+  assert.equal(await page.locator("#panel .fine-enough").textContent(), `Fine enough: the organ is nowhere thinner than two spacings (${Number((4 * radius_mm + 2 * gap_mm).toPrecision(4))} mm).`);
   assert.match(shape, /95 % within [\d.]+ mm, all within [\d.]+ mm/);
   assert.ok(plan.includes(`shape of kidney, ${shape}\n`), `${shape}\n---\n${plan}`);
   const started = Date.now();
@@ -282,6 +285,55 @@ step("the slider fills again: spheres, time per tick, scatter", async () => {
   await picture(page, "author-scatter");
   assert.deepEqual(await seriousFindings(page), []);
   await button("surface").click();
+});
+
+step("the stiffness is fitted for other spheres, as by the command, in one step", async () => {
+  const before = await text(), other = makeFolder(), warned = page.locator("#panel .warning:has-text('fitted with spheres of 4 mm')");
+  await warned.waitFor();
+  for (const file of [kScene, ...JSON.parse(before).organs.map(({ mesh }) => mesh)]) cpSync(join(folder, file), join(other, file));
+  const shown = await page.locator("#panel .command code:has-text('ctpm fit')").innerText(), command = ctpmBeside(other, ...shown.split(" ").slice(1));
+  // One that is stopped changes nothing.
+  await page.evaluate(async () => {
+    const press = (name) => [...document.querySelectorAll("#panel button")].find((button) => button.textContent === name).click();
+    press("Fit the stiffness");
+    for (let i = 0; i < 2; ++i) await new Promise((resolve) => requestAnimationFrame(resolve));
+    press("cancel");
+  });
+  await button("Fit the stiffness", "#panel").waitFor();
+  assert.equal(await text(), before);
+  assert.equal(await page.locator("#panel .problems, #panel .fitted").count(), 0);
+  await button("Fit the stiffness", "#panel").click();
+  await page.waitForSelector("#panel .working:has-text('fitting')");
+  await picture(page, "author-fitting");
+  await page.waitForSelector("#panel .fitted");
+  const { code, out, err } = await command;
+  assert.equal(code, 0, err);
+  assert.deepEqual(await scene(), JSON.parse(readFileSync(join(other, kScene), "utf8")));
+  assert.equal(await warned.count(), 0);
+  const rows = await page.locator("#panel .fitted tbody tr").evaluateAll((list) => list.map((row) => [...row.cells].map((cell) => Number.parseFloat(cell.textContent))));
+  const printed = out.split("\n").map((line) => line.trim().split(/\s+/).map(Number)).filter((row) => row.length === 5 && row.every(Number.isFinite));
+  assert.equal(rows.length, 6);
+  for (const [i, row] of rows.entries()) for (const [k, number] of row.entries()) assert.ok(Math.abs(number - printed[i][k]) < 0.0051, `${row} and ${printed[i]}`);
+  await page.locator("#panel .fitted").scrollIntoViewIfNeeded();
+  await picture(page, "author-fitted");
+  assert.deepEqual(await seriousFindings(page), []);
+  await page.keyboard.press("Control+z");
+  assert.equal(await text(), before);
+  // Who changes the organ meanwhile is told, and keeps the change.
+  await page.evaluate(() => {
+    [...document.querySelectorAll("#panel button")].find((button) => button.textContent === "Fit the stiffness").click();
+    const slider = document.querySelector("#panel .slider input");
+    slider.value = String(Number(slider.value) + 20);
+    for (const event of ["input", "change"]) slider.dispatchEvent(new Event(event, { bubbles: true }));
+  });
+  await page.waitForSelector("#panel .problems:has-text('was changed while it was fitted')");
+  const { fill, material } = (await scene()).organs[0], was = JSON.parse(before).organs[0];
+  assert.ok(fill.radius_mm > was.fill.radius_mm);
+  assert.deepEqual(material, was.material);
+  await page.keyboard.press("Control+z");
+  assert.equal(await text(), before);
+  await settled();
+  rmSync(other, { recursive: true });
 });
 
 step("nothing is lost when the program is killed while a scene is edited", async () => {

@@ -88,6 +88,34 @@ step("the slider is dragged with the mouse: one step, its numbers are told, and 
   await settled();
 });
 
+step("a change that is taken back while the time of a step is measured leaves nothing unmeasured", async () => {
+  const before = await text(), time = () => page.waitForFunction(() => / ms it has$/.test([...document.querySelectorAll("#panel .readings div")].find((d) => d.textContent.startsWith("a step takes"))?.lastChild.textContent ?? ""));
+  await time();
+  // As soon as it is measured, a tool is added and taken back at once.
+  await page.evaluate(() => {
+    globalThis.said = [];
+    globalThis.watching = new MutationObserver(() => {
+      const cost = [...document.querySelectorAll("#panel .readings div")].find((d) => d.textContent.startsWith("a step takes"))?.lastChild.textContent ?? "";
+      if (!cost.startsWith("measuring")) return;
+      globalThis.watching.disconnect();
+      globalThis.said.push(cost);
+      for (const name of ["+ scalpel", "Undo"]) [...document.querySelectorAll(".author button")].find((button) => button.textContent === name).click();
+    });
+    globalThis.watching.observe(document.querySelector("#panel"), { subtree: true, childList: true, characterData: true });
+  });
+  await page.locator("#panel .slider input").first().focus();
+  for (let i = 0; i < 4; ++i) await page.keyboard.press("ArrowLeft");
+  const changed = await text();
+  await page.waitForFunction(() => globalThis.said.length > 0);
+  await settled();
+  assert.equal(await text(), changed, "the tool was taken back");
+  await page.click("#tab-filling");
+  await time();
+  await page.keyboard.press("Control+z");
+  assert.equal(await text(), before);
+  await settled();
+});
+
 step("spheres are drawn in the colours of their layers, and those that never move in blue", async () => {
   await button("spheres").click();
   await page.waitForTimeout(300);
@@ -108,6 +136,10 @@ step("the scatter in full is that of the command", async () => {
   await write((await text()).replace('"radius_mm": 4, "gap_mm": 4', '"radius_mm": 6, "gap_mm": 6'));
   await save();
   await settled();
+  // What is too thin for so large spheres is said as `plan` says it.
+  const thin = /\d+ of \d+ spheres lie in tissue thinner than .*? mm(?= \(a smaller)/.exec(ctpm(folder, "plan", kScene, "--quick").err)[0];
+  assert.ok((await page.locator("#panel .fine-enough.warning").textContent()).includes(thin), thin);
+  await picture(page, "author-too-coarse");
   const command = ctpmBeside(folder, "fidelity", kScene, "-o", "fidelity");
   await button("In full", "#panel").click();
   await page.waitForSelector("#panel .scatter");
@@ -160,7 +192,7 @@ step("changes of one value within half a second are one step", async () => {
 // Ten steps in each round: 200 as is promised, or enough of each kind.
 const kRounds = isWhole ? 20 : 3;
 
-step(`${10 * kRounds} steps of all kinds are undone and done again, each as it was`, async () => {
+step(`${10 * kRounds} steps of all kinds are undone and done again, each as it was, also after the page was loaded anew`, async () => {
   await page.setViewportSize({ width: 1000, height: 560 }); // fewer pixels are drawn for each
   await page.click("#tab-place");
   const before = await text(), steps = [before];
@@ -202,20 +234,25 @@ step(`${10 * kRounds} steps of all kinds are undone and done again, each as it w
     await page.keyboard.press("Delete");
     await did("remove the probe by key");
   }
-  const count = 10 * kRounds;
+  const count = 10 * kRounds, half = count / 2;
   assert.equal(steps.length, count + 1);
-  for (let i = count - 1; i >= 0; --i) {
+  const undo = async (to) => {
     await page.keyboard.press("Control+z");
-    assert.equal(await text(), steps[i], `undone to step ${i}`);
-  }
-  assert.ok(!(await button("Undo").isEnabled()) || (await text()) === before);
-  for (let i = 1; i <= count; ++i) await page.keyboard.press("Control+Shift+z");
-  assert.equal(await text(), steps[count]);
-  await page.evaluate((key) => localStorage.removeItem(key), `ctpm.draft:${kScene}`);
-  await page.setViewportSize({ width: 1280, height: 720 });
+    assert.equal(await text(), steps[to], `undone to step ${to}`);
+  };
+  for (let i = count - 1; i >= half; --i) await undo(i);
+  // The page is loaded anew in the middle of them: what leads on is there, and so is what led here.
   await page.reload();
   await openScene();
-  assert.equal(await text(), before);
+  await page.waitForSelector(".earlier-visit");
+  assert.equal(await text(), steps[half]);
+  for (let i = half + 1; i <= count; ++i) {
+    await page.keyboard.press("Control+Shift+z");
+    assert.equal(await text(), steps[i], `done again to step ${i}`);
+  }
+  assert.ok(!(await button("Redo").isEnabled()));
+  for (let i = count - 1; i >= 0; --i) await undo(i);
+  await page.setViewportSize({ width: 1280, height: 720 });
 });
 
 /** Goes to a control by the tabulator alone. */
@@ -371,7 +408,7 @@ step("a blade cuts when a scene is tried, and nothing is kept", async () => {
   await settled();
 });
 
-step("a draft is there after its tab was closed", async () => {
+step("a draft is there after its tab was closed, until the file says the same", async () => {
   const saved = onDisk(), changed = saved.replace('"name": "kidney"', '"name": "not saved"');
   await write(changed);
   assert.equal(await text(), changed);
@@ -386,7 +423,7 @@ step("a draft is there after its tab was closed", async () => {
   await openScene();
   assert.equal(await text(), changed);
   assert.match(await page.locator(".verdict").textContent(), /not saved$/);
-  const told = page.locator(".earlier-visit[role=status]:has-text('unsaved changes of an earlier visit: Undo goes back to the file')");
+  const told = page.locator(".earlier-visit[role=status]:has-text('unsaved changes of an earlier visit: Undo takes them back')");
   await told.waitFor();
   assert.deepEqual(await seriousFindings(page), []);
   await picture(page, "author-earlier-visit");
@@ -396,7 +433,41 @@ step("a draft is there after its tab was closed", async () => {
   assert.equal(await marked.count(), 0);
   await page.keyboard.press("Control+Shift+z");
   assert.equal(onDisk(), saved);
+  // One that another tab wrote: the history is none of it, and one step leads back to the file.
+  const others = changed.replace("not saved", "of another tab");
+  await page.waitForFunction(([key, text]) => JSON.parse(localStorage.getItem(key)).doc === text, [`ctpm.history:${kScene}`, changed]);
+  await page.evaluate(([key, text]) => localStorage.setItem(key, text), [`ctpm.draft:${kScene}`, others]);
+  await page.reload();
+  await openScene();
+  assert.equal(await text(), others);
+  assert.ok(!(await button("Redo").isEnabled()));
+  await page.keyboard.press("Control+z");
+  assert.equal(await text(), saved);
+  assert.ok(!(await button("Undo").isEnabled()));
+  await page.keyboard.press("Control+Shift+z");
+  // Somebody writes into the file what is here, with other ends of lines: it is saved, and nobody is asked.
+  writeFileSync(join(folder, kScene), others.replaceAll("\n", "\r\n"));
+  await page.waitForSelector(".verdict:has-text(', saved')");
+  assert.equal(await page.locator(".conflict").count(), 0);
+  assert.equal(await marked.count(), 0);
+  await page.keyboard.press("Control+z");
+  await save();
+  assert.equal(onDisk(), saved);
+  // The same while the scene is not open: its mark goes when its author comes back to the window.
+  await page.keyboard.press("Control+Shift+z");
+  await page.reload();
+  await page.waitForFunction(() => document.querySelector(".scenes li button[aria-describedby]"));
+  writeFileSync(join(folder, kScene), others);
+  await page.evaluate(() => dispatchEvent(new Event("focus")));
+  await marked.waitFor({ state: "detached" });
+  assert.equal(await page.evaluate((key) => localStorage.getItem(key), `ctpm.draft:${kScene}`), null);
+  await openScene();
+  await page.waitForSelector(".verdict:has-text(', saved')");
+  await page.keyboard.press("Control+z");
+  await save();
+  assert.equal(onDisk(), saved);
 });
+
 
 step("a program that is killed while it writes leaves the scene whole, and nothing is lost", async () => {
   const saved = onDisk(), longer = `${await text()}\n${" ".repeat(300_000)}\n`;

@@ -242,7 +242,7 @@ export async function seriousFindings(page) {
     .map((v) => `${v.id}: ${v.nodes.map((n) => n.html).join(" | ")}`);
 }
 
-/** Controls that can be seen and used, but that the tabulator does not come to. */
+/** Controls that can be seen and used, but that the tabulator does not come to, nor to one of their row, which arrow keys go along. */
 export async function outOfReach(page) {
   await page.evaluate(() => {
     globalThis.reached = new Set();
@@ -258,10 +258,13 @@ export async function outOfReach(page) {
   });
   do await page.keyboard.press("Tab");
   while (await goesOn());
-  return page.evaluate(() => [...document.querySelectorAll("button, input:not([type=radio]), select, textarea, summary, a[href], [tabindex]")]
-    .filter((control) => !control.disabled && control.checkVisibility({ visibilityProperty: true }) && !control.closest("[aria-hidden=true]")
-      && !globalThis.reached.has(control) && !globalThis.reached.has(globalThis.looks(control)))
-    .map((control) => control.outerHTML.slice(0, 120)));
+  return page.evaluate(() => {
+    const isReached = (control) => globalThis.reached.has(control) || globalThis.reached.has(globalThis.looks(control));
+    const isInRow = (control) => control.tabIndex === -1 && [...control.closest("ul, .handles")?.querySelectorAll("button[tabindex='0']") ?? []].some(isReached);
+    return [...document.querySelectorAll("button, input:not([type=radio]), select, textarea, summary, a[href], [tabindex]")]
+      .filter((control) => !control.disabled && control.checkVisibility({ visibilityProperty: true }) && !control.closest("[aria-hidden=true]") && !isReached(control) && !isInRow(control))
+      .map((control) => control.outerHTML.slice(0, 120));
+  });
 }
 
 /** A picture of the page, to be looked at by people: it takes most of a second, and so is taken where it is asked for. */

@@ -207,9 +207,40 @@ step("anchors are painted by the brush; a stroke is one step", async () => {
   assert.equal(await row.locator("li button:visible").count(), 0);
   await row.locator("summary").click();
   assert.equal(await row.locator("li button:visible").count(), balls);
+  assert.deepEqual(await outOfReach(page), []);
+  assert.equal(await row.locator("li button[tabindex='0']").count(), 1);
+  await row.locator("li button[tabindex='0']").focus();
+  await page.keyboard.press("ArrowDown");
+  assert.ok(await row.locator("li button").nth(1).evaluate((control) => control === document.activeElement && control.tabIndex === 0));
+  // Their handles are one stop of the tabulator. Arrow keys go from one to the next, until one is chosen: then they move it.
   await row.locator("li button").nth(1).click();
   await page.waitForSelector("#panel h2:has-text('anchor: ball')");
   await picture(page, "author-stroke");
+  const chosen = page.locator(".handle[aria-pressed=true]");
+  await chosen.focus();
+  await page.keyboard.press("Escape");
+  assert.equal(await chosen.count(), 0);
+  const stops = page.locator(".handle.anchor[tabindex='0']:visible");
+  assert.equal(await stops.count(), 1);
+  await stops.focus();
+  const focused = () => page.evaluate(() => document.activeElement.textContent);
+  await page.keyboard.press("End");
+  assert.equal(await focused(), `ball ${painted.length}`);
+  await page.keyboard.press("ArrowLeft");
+  assert.equal(await focused(), `ball ${painted.length - 1}`);
+  assert.match(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), new RegExp(`one of ${painted.length - anchors}; arrow keys go to the others`));
+  assert.deepEqual((await scene()).organs[0].anchors, painted, "no ball moved");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector(`#panel h2:has-text('ball ${painted.length - 1}')`);
+  await page.keyboard.press("ArrowUp");
+  const nudged = (await scene()).organs[0].anchors;
+  assert.notDeepEqual(nudged.at(-2), painted.at(-2));
+  assert.deepEqual(nudged.toSpliced(-2, 1), painted.toSpliced(-2, 1));
+  await page.keyboard.press("Control+z");
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("Home");
+  assert.equal(await focused(), `ball ${anchors + 1}`);
+  assert.deepEqual((await scene()).organs[0].anchors, painted);
   await row.locator("button:has-text('remove them all')").click();
   assert.equal((await scene()).organs[0].anchors?.length ?? 0, anchors);
   await page.keyboard.press("Control+z");
@@ -218,6 +249,42 @@ step("anchors are painted by the brush; a stroke is one step", async () => {
   assert.equal(await text(), before);
   await page.keyboard.press("Control+Shift+z");
   assert.deepEqual((await save()).organs[0].anchors, painted);
+});
+
+step("the view turns about what is up, and calmly where it looks straight down", async () => {
+  const view = await page.locator(".view canvas").boundingBox(), before = await text(), kDegree = Math.PI / 180;
+  const at = { x: view.x + 0.96 * view.width, y: view.y + 0.12 * view.height };
+  /** Where it is seen from: around what is up, and above the horizon [degrees]. */
+  const seen = async () => {
+    await button("+ this view", ".objects").click();
+    const { eye_mm, target_mm, up } = (await scene()).cameras.at(-1), [x, y, z] = eye_mm.map((e, i) => e - target_mm[i]);
+    await page.keyboard.press("Control+z");
+    assert.deepEqual(up, [0, 0, 1]);
+    return { around: Math.atan2(y, x) / kDegree, above: Math.asin(z / Math.hypot(x, y, z)) / kDegree };
+  };
+  const apart = (a, b) => Math.abs(((a - b + 540) % 360) - 180), turn = (pixels) => (360 * pixels) / view.height;
+  await page.locator(".objects button", { has: page.locator('span:text-is("front")') }).click();
+  await button("Look through it", "#panel").click();
+  const first = await seen();
+  await drag(at, { x: 0, y: 40 });
+  const higher = await seen();
+  assert.ok(apart(higher.around, first.around) < 0.5 && Math.abs(higher.above - first.above - turn(40)) < 1, JSON.stringify([first, higher]));
+  // Far beyond straight down: it stops there, and what was in front stays in front.
+  await drag(at, { x: 0, y: 0.6 * view.height }, 30);
+  const above = await seen();
+  assert.ok(above.above > 89 && apart(above.around, first.around) < 1, JSON.stringify([first, above]));
+  await picture(page, "author-straight-down");
+  await drag(at, { x: -40, y: 3 });
+  const beside = await seen();
+  assert.ok(beside.above > 89 && Math.abs(apart(beside.around, above.around) - turn(40)) < 1, JSON.stringify([above, beside]));
+  // By keys too.
+  await page.locator(".view canvas").focus();
+  for (const key of ["w", "w", "d"]) await page.keyboard.press(key);
+  const byKeys = await seen();
+  assert.ok(byKeys.above > 89 && Math.abs(apart(byKeys.around, beside.around) - 0.1 / kDegree) < 1, JSON.stringify([beside, byKeys]));
+  await page.locator(".objects button", { has: page.locator('span:text-is("front")') }).click();
+  await button("Look through it", "#panel").click();
+  assert.equal(await text(), before);
 });
 
 step("a camera is the view that was orbited to", async () => {

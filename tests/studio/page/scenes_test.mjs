@@ -1,6 +1,6 @@
 // An author who renames scenes, removes them and brings them back, and how they look: scenes_test.mjs PROGRAM SOURCE PACKAGES SESSIONS PICTURES
 import assert from "node:assert/strict";
-import { cpSync, existsSync, readdirSync, readFileSync, renameSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, readdirSync, readFileSync, renameSync, unlinkSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
@@ -194,6 +194,31 @@ step("by keyboard too", async () => {
   await button("Undo", ".scene-form").focus();
   await page.keyboard.press("Enter");
   assert.deepEqual(await until(listed, (names) => names.includes("skin")), ["kidney", "skin"]);
+});
+
+step("files that a command has made meanwhile are listed as soon as somebody looks, in each room", async () => {
+  const come = () => page.evaluate(() => dispatchEvent(new Event("focus"))), room = (name) => page.click(`header nav button:has-text('${name}')`);
+  cpSync(join(folder, "skin.json"), join(folder, "late.json"));
+  await page.locator("header nav button").first().focus();
+  assert.ok(!(await listed()).includes("late"));
+  await more("skin").focus(); // into the list
+  assert.ok((await until(listed, (names) => names.includes("late"))).includes("late"));
+  unlinkSync(join(folder, "late.json"));
+  await come();
+  assert.deepEqual(await until(listed, (names) => !names.includes("late")), ["kidney", "skin"]);
+  const late = page.locator(".list button:has-text('late')");
+  for (const [name, from, to] of [["Review", kExpert, "late.ctpm"], ["Train", "skin.json", "late.json"]]) {
+    await room(name);
+    await page.waitForSelector(".list button");
+    cpSync(join(folder, from), join(folder, to));
+    await come();
+    await late.waitFor();
+    unlinkSync(join(folder, to));
+    await come();
+    await late.waitFor({ state: "detached" });
+  }
+  await room("Author");
+  await page.waitForSelector(".scenes button");
 });
 
 step("what was removed stands at the end of the list, until it is brought back or deleted for good", async () => {

@@ -143,7 +143,7 @@ TEST_F(AuthorTest, TheShapeErrorOfAFillingIsThatOfPlan) {
   const Serving serving(folder_.path());
   SocketClient client(serving);
   std::vector<std::string> told;
-  for (const double radius : {4, 2}) {
+  for (const double radius : {4, 2, 9}) {
     text_["organs"][0]["fill"] = {{"radius_mm", radius}, {"gap_mm", radius}};
     const auto shown = client.call("scene.show", {{"path", "kidney.json"}, {"stage", kStage}, {"text", text_.dump()}});
     ASSERT_TRUE(shown.contains("result")) << shown;
@@ -157,6 +157,11 @@ TEST_F(AuthorTest, TheShapeErrorOfAFillingIsThatOfPlan) {
     EXPECT_GT(figures["largest_mm"].get<double>(), figures["p95_mm"].get<double>());
     EXPECT_NE(told.back().find("95 % within " + importers::mm_text(1e-3 * figures["p95_mm"].get<double>())),
               std::string::npos);
+    // What is too thin for its spheres is said in the same words, too.
+    const std::string thin = shown["result"]["organs"][0]["thin_parts"];
+    EXPECT_EQ(thin.empty(), plan.err.find("spheres lie in tissue thinner than") == std::string::npos) << plan.err;
+    EXPECT_NE(plan.err.find(thin), std::string::npos) << thin << plan.err;
+    EXPECT_EQ(thin.empty(), radius < 8) << thin;
   }
   EXPECT_NE(told[0], told[1]);
 }
@@ -249,6 +254,32 @@ TEST_F(AuthorTest, TheScatterIsThatOfTheCommand) {
   for (std::size_t i = 0; i < printed.size(); ++i) EXPECT_NEAR(printed[i], told[i], 1e-9 * printed[i]);
 }
 
+TEST_F(AuthorTest, AFitIsThatOfTheCommandAndKeepsTheRestOfTheText) {
+  text_["organs"][0]["fill"] = {{"radius_mm", 6}, {"gap_mm", 6}};
+  const std::string text = "// mine\n" + text_.dump(2);
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  nlohmann::json asked = {{"path", "kidney.json"}, {"text", text}, {"organ", "kidney"}};
+  const auto fitted = client.call("scene.fit", asked)["result"];
+  std::ofstream(folder_.path() / "kidney.json") << text;
+  const auto command = testing::run_ctpm({"fit", "kidney.json", "--organ", "kidney", "--write"}, folder_.path());
+  ASSERT_EQ(command.code, 0) << command.err;
+  EXPECT_EQ(fitted["text"], testing::slurp(folder_.path() / "kidney.json"));
+  const auto scene = nlohmann::json::parse(fitted["text"].get<std::string>(), nullptr, true, true);
+  const auto& material = scene["organs"][0]["material"];
+  EXPECT_EQ(material["fitted_for"]["sphere_radius_mm"], 6);
+  EXPECT_NEAR(material["stiffness_scale"].get<double>(), fitted["stiffness_scale"].get<double>(), 1e-5);
+  EXPECT_NE(material["stiffness_scale"], text_["organs"][0]["material"]["stiffness_scale"]);
+  ASSERT_EQ(fitted["rows"].size(), 6u);
+  EXPECT_NEAR(fitted["rows"][5]["error"].get<double>(), 0, 0.002);
+  EXPECT_EQ(fitted["is_of_table"], true);
+  asked["organ"] = "liver";
+  const auto refused = client.call("scene.fit", asked);
+  ASSERT_TRUE(refused.contains("errors")) << refused;
+  EXPECT_EQ(refused["errors"][0]["where"], "kidney.json");
+  EXPECT_EQ(refused["errors"][0]["hint"], "it has: kidney");
+}
+
 TEST_F(AuthorTest, WhatTakesLongCanBeStoppedAndLeavesNothing) {
   const Serving serving(folder_.path());
   SocketClient client(serving);
@@ -260,6 +291,11 @@ TEST_F(AuthorTest, WhatTakesLongCanBeStoppedAndLeavesNothing) {
   text_["organs"][0]["fill"] = {{"radius_mm", 2}, {"gap_mm", 2}};
   const auto scatter = stopped(client, "scene.scatter", {{"path", "kidney.json"}, {"text", text_.dump()}});
   ASSERT_TRUE(scatter.contains("errors")) << scatter;
+  nlohmann::json presses;
+  const auto fit = stopped(client, "scene.fit", {{"path", "kidney.json"}, {"text", text_.dump()}}, &presses);
+  ASSERT_TRUE(fit.contains("errors")) << fit;
+  EXPECT_EQ(fit["errors"][0]["message"], "stopped");
+  EXPECT_EQ(presses["total"], 45) << presses;
 }
 
 /// The kidney without the triangles of its end, where x is the largest.
