@@ -147,7 +147,7 @@ export function NotesPanel({ player, notes: { all, write } }: { player: Player; 
         <NoteText label={`at ${seconds(time)}${isIn ? "" : ", when this session does not run"}`} text={text} onText={setText} onDone={() => void add()} />
         <button type="button" class="main" disabled={!canAdd} onClick={() => void add()}>Add note</button>
         <Problems error={error ?? (read instanceof Error ? read : null)} />
-        {error && notes && <p class="hint">Below are the notes as they are now.</p>}
+        {error && notes && <p class="hint">They were read again: below they are as they are now.</p>}
         {notes?.length === 0 && <p class="hint">No notes yet. They are kept in a file beside the session, which never changes.</p>}
         {Object.entries(edited).map(([of, note]) => note && (
           <div key={of} hidden={of !== path}>

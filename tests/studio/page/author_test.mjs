@@ -71,22 +71,15 @@ step("a hole that is too wide is told, and closed when its author says so", asyn
   const lines = readFileSync(join(paths.source, "scenes", "organs", "kidney.obj"), "utf8").trimEnd().split("\n");
   const x = lines.filter((line) => line.startsWith("v ")).map((line) => Number(line.split(/\s+/)[1])), least = Math.min(...x), most = Math.max(...x);
   const mesh = Buffer.from(lines.filter((line) => !line.startsWith("f ") || x[Number.parseInt(line.split(/\s+/)[1]) - 1] < most - 0.15 * (most - least)).join("\n") + "\n");
-  await page.evaluate(() => {
-    const { open } = XMLHttpRequest.prototype;
-    globalThis.uploads = 0;
-    XMLHttpRequest.prototype.open = function (method, ...of) {
-      globalThis.uploads += Number(method === "PUT");
-      return open.call(this, method, ...of);
-    };
-  });
-  const uploads = () => page.evaluate(() => globalThis.uploads);
+  const uploads = [], listen = (request) => request.method() === "PUT" && uploads.push(request.url());
+  page.on("request", listen);
   await drop("holed.obj", mesh);
   await page.locator("aside label:has-text('radius') input").fill("5");
   await button("Import", "aside").click();
   await page.waitForSelector("aside .problems:has-text('wider than')");
   const told = await page.locator("aside .problems").innerText();
   assert.match(told, /^holed\.obj: /);
-  assert.equal(await uploads(), 1);
+  assert.equal(uploads.length, 1);
   await picture(page, "author-holed");
   // What would close it is offered where it was refused.
   const width = /largest_hole_mm (\d+)/.exec(told)[1];
@@ -94,8 +87,9 @@ step("a hole that is too wide is told, and closed when its author says so", asyn
   assert.equal(await page.locator("aside label:has-text('largest hole') input").inputValue(), width);
   assert.ok((await page.locator("aside .command code").innerText()).includes(`--largest-hole-mm ${width}`));
   await page.waitForSelector("aside .good:has-text('holed-scene.json')");
-  assert.equal(await uploads(), 1, "it was not uploaded anew");
+  assert.equal(uploads.length, 1, "it was not uploaded anew");
   assert.ok(!existsSync(join(folder, "holed.obj")));
+  page.off("request", listen);
   await settled();
 });
 

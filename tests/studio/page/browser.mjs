@@ -4,7 +4,7 @@ import { spawn, spawnSync } from "node:child_process";
 import { cpSync, mkdirSync, mkdtempSync, readdirSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
-import { dirname, join, resolve } from "node:path";
+import { join, resolve } from "node:path";
 import { text } from "node:stream/consumers";
 import { test } from "node:test";
 import { inflateSync } from "node:zlib";
@@ -20,18 +20,6 @@ export const kFlags = [
   // As on a machine without a GPU: the processor draws the page, and WebGL where a page asks for it.
   "--disable-gpu", "--enable-unsafe-swiftshader",
 ];
-
-// Playwright follows the network of each page: the browser then hands it every picture of the studio a second time, as text, which on two
-// processors slows down what is tested. Tests that ask what the page loads, or for what it gets, turn that on before they open a browser.
-let isNetworkFollowed = false;
-export function followNetwork() {
-  isNetworkFollowed = true;
-}
-const { CRSession } = require(join(dirname(require.resolve("playwright-core/package.json")), "lib/server/chromium/crConnection.js"));
-const send = CRSession.prototype.send;
-CRSession.prototype.send = function (method, ...of) {
-  return method === "Network.enable" && !isNetworkFollowed ? Promise.resolve({}) : send.call(this, method, ...of);
-};
 
 let broken = "";
 /** A test of a file in which each goes on where the one before left the page. After one that fails the others are not tried: they would
@@ -138,18 +126,18 @@ export async function openStudio(folder, port = 0, ...more) {
   const live = { ready: 0, frames: 0 }; // of a training: how often the page asked for a picture, and how many came
   let sent = null, count = 0, rested = 0; // the hand that the page sent last, of how many, and how many of them were where it is
   const apart = (a, b) => ["position", "orientation"].some((of) => a[of].some((x, i) => Math.abs(x - b[of][i]) > 1e-9));
-  await watchSocket(page, {
-    came: (isFrame) => {
-      cameAt = Date.now();
-      live.frames += Number(isFrame);
-    },
-    ready: () => ++live.ready,
-    hand: (hand) => {
-      ++count;
-      rested = sent && !apart(hand, sent) ? rested + 1 : 0;
-      sent = hand;
-    },
-  });
+  page.on("websocket", (socket) => socket.on("framesent", ({ payload }) => {
+    live.ready += Number(String(payload).startsWith('{"ready"'));
+    if (!String(payload).startsWith('{"hand"')) return;
+    const { hand } = JSON.parse(String(payload));
+    ++count;
+    rested = sent && !apart(hand, sent) ? rested + 1 : 0;
+    sent = hand;
+  }));
+  page.on("websocket", (socket) => socket.on("framereceived", ({ payload }) => {
+    cameAt = Date.now();
+    live.frames += Number(typeof payload !== "string" && payload.readUInt32LE(0) === 2 && (payload.readUInt32LE(20) & 2) !== 0);
+  }));
   /** Waits until the program has sent nothing for that time. */
   const quiet = async (ms = 300) => {
     for (const began = Date.now(); Date.now() < Math.max(cameAt, began) + ms; ) await new Promise((resolve) => setTimeout(resolve, 20));
@@ -194,37 +182,6 @@ export async function openStudio(folder, port = 0, ...more) {
     return (await answer.json()).result;
   };
   return { page, address, complaints, close, kill, limitFiles, ended: () => (server.exitCode ?? server.signalCode ?? ended(server)), startAgain, call, hand: () => sent, handsSent: () => count, live, handAtRest, quiet };
-}
-
-/** Tells of the page's messages from the next load on: that one came, and whether it is a frame of a training, that the page asked for one,
-    and the hand that it sent. */
-async function watchSocket(page, { came, ready, hand }) {
-  const session = await page.context().newCDPSession(page);
-  session.on("Runtime.bindingCalled", ({ name, payload }) => {
-    if (name !== "tellTest") return;
-    if (payload === "came" || payload === "frame") came(payload === "frame");
-    else if (payload === "ready") ready();
-    else hand(JSON.parse(payload).hand);
-  });
-  await session.send("Runtime.enable");
-  await session.send("Runtime.addBinding", { name: "tellTest" });
-  await page.addInitScript(() => {
-    const tell = globalThis.tellTest;
-    globalThis.WebSocket = class extends WebSocket {
-      constructor(...of) {
-        super(...of);
-        this.addEventListener("message", ({ data }) => {
-          const isBinary = data instanceof ArrayBuffer && data.byteLength >= 24, words = isBinary && new Uint32Array(data, 0, 6);
-          tell(isBinary && words[0] === 2 && (words[5] & 2) !== 0 ? "frame" : "came");
-        });
-      }
-      send(data) {
-        if (data.startsWith('{"ready"')) tell("ready");
-        else if (data.startsWith('{"hand"')) tell(data);
-        super.send(data);
-      }
-    };
-  });
 }
 
 /** Lets a test keep back what the program sends, as a loaded machine would: from the next load on the page's global `holds`, while it is

@@ -4,7 +4,7 @@ import { readFileSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { ctpmBeside, followNetwork, makeFolder, openBrowser, overflow, picture, seriousFindings } from "./browser.mjs";
+import { ctpmBeside, makeFolder, openBrowser, overflow, picture, seriousFindings } from "./browser.mjs";
 
 /** The columns of a CSV file as numbers, by name. */
 function columns(path) {
@@ -25,7 +25,6 @@ function numberOf(told, name) {
   return Number(told.find((line) => line.startsWith(name))?.split(" ").at(-1));
 }
 
-followNetwork();
 test("a comparison is read at any width, and the cursor of a plot tells what was recorded", async () => {
   const folder = makeFolder("kidney-cut-expert.ctpm", "kidney-cut-clumsy.ctpm");
   const [compared, replayed, { page, complaints, close }] = await Promise.all([

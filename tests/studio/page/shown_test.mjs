@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { networkInterfaces } from "node:os";
 import { after, before } from "node:test";
 import { openDevice } from "./igtl.mjs";
-import { chooseDevice, ctpm, ctpmBeside, followNetwork, makeFolder, openStudio, paths, picture, pixelsOf, rareStep, step, takeUp } from "./browser.mjs";
+import { chooseDevice, ctpm, ctpmBeside, makeFolder, openStudio, paths, picture, pixelsOf, rareStep, step, takeUp } from "./browser.mjs";
 import { cross, dot, length, minus, scaled, unit } from "./vectors.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm", kSame = "kidney-same.ctpm";
@@ -16,7 +16,6 @@ let shown = null; // newest frame of a training
 before(async () => {
   folder = makeFolder("kidney.json", kExpert, kClumsy);
   copyFileSync(join(folder, kExpert), join(folder, kSame));
-  followNetwork();
   studio = await openStudio(folder);
   page = studio.page;
   page.on("websocket", (socket) => socket.on("framereceived", ({ payload }) => {
