@@ -112,6 +112,8 @@ Errors check_arguments(const ExportArguments& arguments) {
   const bool is_many = arguments.files.size() > 1, is_picture = is_sheet(arguments.output);
   if (arguments.at_s && !is_picture)
     errors.push_back({"--at-s", "is for .png, .vtp, .vtu and .glb, which hold one moment", ""});
+  if (!arguments.options.caption.empty() && is_picture && !arguments.at_s)
+    errors.push_back({"--caption", "is for videos and for the picture of a moment", "give --at-s too"});
   if (is_picture) append(errors, check_pair(arguments, " is a picture of one session"));
   for (const auto& [flag, other] : {std::pair{"--beside", &arguments.beside}, {"--ghost", &arguments.ghost}})
     if (is_many && !other->empty()) errors.push_back({flag, "is for one session, and several are given", ""});
@@ -284,6 +286,9 @@ Command add_export(CLI::App& program) {
   app->add_option("--speed", options.speed, "Times real speed")->capture_default_str();
   app->add_option("--slow-at", options.slow_at,
                   "Four times slower around these moments: cut, damage, worst, with commas");
+  app->add_option("--caption", options.caption,
+                  "Words in the picture from the first to the last, in place of what happens; of a pair in the right "
+                  "half");
   app->add_option("--overlay", options.overlay, "What stands in the picture: none, small or full")
       ->capture_default_str();
   app->add_option("--inset", options.inset,

@@ -26,6 +26,7 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"device.tool", "--device-tool"},
     {"export.align", "--align"},
     {"export.allow_diverged", "--allow-diverged"},
+    {"export.caption", "--caption"},
     {"export.fps", "--fps"},
     {"export.inset", "--inset"},
     {"export.overlay", "--overlay"},

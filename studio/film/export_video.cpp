@@ -34,6 +34,11 @@ Errors check_options(const std::string& path, const ExportOptions& options) {
   if (!level_of(options.overlay))
     errors.push_back(
         {output::option_name("export.overlay"), "got '" + options.overlay + "', must be none, small or full", ""});
+  if (options.caption.size() > kLongestCaption)
+    errors.push_back({output::option_name("export.caption"),
+                      "has " + std::to_string(options.caption.size()) + " bytes, at most " +
+                          std::to_string(kLongestCaption) + " are shown",
+                      "say it in fewer words"});
   // A folder must not exist yet, which the writer checks. What is wrong with both places is said once.
   for (const std::string& file : {path, sidecar_of(path)})
     if (!path.ends_with('/'))
@@ -61,7 +66,10 @@ Result<std::vector<std::array<double, 2>>> slow_parts_of(const std::vector<recor
 /// What the track says: of a pair, of which half it is true.
 std::vector<video::Caption> captions_of_all(const std::vector<Reel>& reels, double fps) {
   std::vector<std::vector<video::Caption>> all;
-  for (const Reel& reel : reels) all.push_back(captions_of(reel.moments, reel.ticks, reel.told, fps));
+  for (const Reel& reel : reels)
+    all.push_back(reel.caption.empty()
+                      ? captions_of(reel.moments, reel.ticks, reel.told, fps)
+                      : std::vector{video::Caption{0, double(reel.ticks.frame_count) / fps, reel.caption}});
   if (all.size() == 1) return all[0];
   return captions_of_pair(all[0], all[1], {name_of(reels[0].film->reader()), name_of(reels[1].film->reader())});
 }
@@ -110,8 +118,10 @@ Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>
   const int width = options.size.width / int(sessions.size());
   std::vector<Reel> reels;
   for (std::size_t i = 0; i < sessions.size(); ++i) {
+    ExportOptions own = options;
+    if (i + 1 < sessions.size()) own.caption.clear();
     Result<Reel> reel =
-        make_reel(*sessions[i], ticks ? std::move((*ticks)[i]) : FrameTicks{}, {width, options.size.height}, options,
+        make_reel(*sessions[i], ticks ? std::move((*ticks)[i]) : FrameTicks{}, {width, options.size.height}, own,
                   reels.empty() ? std::nullopt : std::optional(seen_in(reels[0])));
     if (reel)
       reels.push_back(std::move(*reel));

@@ -16,6 +16,8 @@
 
 namespace ctpm::film {
 
+inline constexpr std::size_t kLongestCaption = 200;
+
 struct ExportOptions {
   render::PictureSize size;
   double fps = 30;                                  ///< frames per second, in [1, 240]
@@ -23,7 +25,9 @@ struct ExportOptions {
   views::LookRequest look;                          ///< view and camera
   session::TimeRange range;                         ///< part that is shown, see ScheduleOptions; by default all
   std::vector<std::array<double, 2>> matched = {};  ///< see ScheduleOptions
-  std::string slow_at;           ///< moments of a single session that are shown slower: see slow_parts()
+  std::string slow_at;  ///< moments of a single session that are shown slower: see slow_parts()
+  /// Words for all of the film in place of what happens, kLongestCaption bytes at most; of a pair of its right half.
+  std::string caption = {};
   std::string overlay = "full";  ///< none, small or full: render::OverlayLevel
   std::string inset = {};        ///< small pictures within the picture: see insets_of()
   bool strip = false;            ///< the whole session's force and moments on a line below the picture

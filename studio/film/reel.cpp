@@ -96,8 +96,9 @@ void make_room(Reel& reel, recordings::SessionReader& session, const render::Pic
   data.level = reel.level;
   data.history.push_back({});
   data.hand.is_blade = true;  // it has the longest name of a depth
+  data.caption = reel.caption;
   for (const Moment& moment : reel.moments)
-    if (moment.text.size() > data.caption.size()) data.caption = moment.text;
+    if (reel.caption.empty() && moment.text.size() > data.caption.size()) data.caption = moment.text;
   data.legend = render::legend_of(reel.film->model(), reel.look.draw);
   data.taken_right = reel.taken_right, data.has_insets = !reel.insets.empty();
   if (may_warn(reel, data, is_pair)) data.worst = {2 * data.damage_force, 2 * data.damage_depth};
@@ -138,7 +139,7 @@ Result<Shot> Reel::shoot(std::int64_t frame) const {
   Result<Shot> shot = film->shoot(ticks.tick(frame));
   if (!shot) return shot;
   shot->overlay.level = level;
-  shot->overlay.caption = words_at(moments, ticks.tick(frame), told);
+  shot->overlay.caption = caption.empty() ? words_at(moments, ticks.tick(frame), told) : caption;
   shot->overlay.stands = frame < ticks.begun    ? render::Stands::before_start
                          : frame >= ticks.ended ? render::Stands::after_end
                                                 : render::Stands::no;
@@ -179,7 +180,7 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
   }
   reel.overlay = std::make_unique<render::Overlay>(size.width, height);
   const std::string title = reel.film->scene().name + ": " + name_of(session);
-  reel.moments = told_moments(*all, title, model.tick, ticks.range.from);
+  reel.moments = told_moments(*all, title, model.tick, ticks.range.from), reel.caption = options.caption;
   if (options.strip) reel.strip = strip_of(session, *all, loading::damage_force_of(reel.film->scene()));
   reel.told = std::llround(kCaptionSeconds * options.speed / model.tick);
   reel.ticks = std::move(ticks), reel.speed = options.speed;

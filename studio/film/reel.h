@@ -30,6 +30,7 @@ struct Reel {
   std::unique_ptr<render::Overlay> overlay;
   FrameTicks ticks;
   std::vector<Moment> moments;
+  std::string caption;      ///< in place of their words for all of the film; empty: none
   std::int64_t told = 0;    ///< ticks for which a moment's words are shown
   double speed = 1;         ///< of the film
   bool shows_pace = false;  ///< where it is not that of the clock

@@ -300,9 +300,7 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
   const int right = is_free                                      ? width - px(5)
                     : plan.legend.height > 0 && !data.has_insets ? plan.legend.x - px(10)
                                                                  : width - margin - data.taken_right;
-  // A still has nothing else to make room for; beside small pictures there is less room.
-  const std::size_t most = is_alone || data.taken_right > 0 ? 2 : 1;
-  const std::vector<std::string> texts = large.in_lines(data.caption, right - left - 2 * pad, most);
+  const std::vector<std::string> texts = large.in_lines(data.caption, right - left - 2 * pad, 2);
   int wide = 0;
   for (const std::string& text : texts) wide = std::max(wide, large.width(text) + 2 * pad);
   const int high = px(23) + 2 * px(13) + px(32) * int(texts.size() - 1);

@@ -86,6 +86,7 @@ Result<std::string> export_session(Parameters& parameters, const CallContext& co
   options.range.to_s = parameters.number_if("to_s", 0, 1e9);
   options.look = look_of(parameters);
   options.slow_at = parameters.text_if("slow_at").value_or("");
+  options.caption = parameters.text_if("caption").value_or("");
   options.overlay = parameters.text_if("overlay").value_or(options.overlay);
   options.allow_diverged = parameters.flag("allow_diverged", false);
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;

@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <mutex>
 
 #include "recordings/byte_hash.h"
 #include "recordings/session_reader.h"
@@ -94,6 +95,8 @@ Result<std::string> write_notes(Parameters& parameters, const CallContext& conte
   if (!file) return file.errors();
   const Result<recordings::SessionReader> session = recordings::SessionReader::open(*file);
   if (!session) return session.errors();
+  static std::mutex writing;  // of two pages that write at the same time the later one is refused
+  const std::lock_guard lock(writing);
   const Result<Notes> present = load(*file);
   if (!present) return present.errors();
   if (present->revision != revision)

@@ -3,7 +3,7 @@ import type { Connection } from "./connection";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { kEventOf } from "./place";
 import { firstOf, type Player } from "./player";
-import type { ComparisonResult, Listing, MeasureRow } from "./protocol";
+import type { ComparisonResult, Listing, MeasureRow, Moment } from "./protocol";
 import { command, seconds, short } from "./text";
 
 /** The session beside: which one, how the two are aligned, and how they differ. */
@@ -100,6 +100,11 @@ export function Compare({ connection, player, listing, comparison, onComparison,
   );
 }
 
+/** What is wrong at a moment, and by how much. */
+export function faultText({ what, value, limit, unit }: Moment): string {
+  return `${what}: ${short(value, 3)} ${unit}${limit == null ? "" : `, limit ${short(limit, 3)} ${unit}`}`;
+}
+
 const kFirstAdvice = 2; // sentences that stand above the worst moments, so that these are seen too
 
 /** What a trainee needs first: what to do better, and the worst moments. `onMoment` gets a time of the trainee's session. */
@@ -121,8 +126,7 @@ export function Outcome({ comparison, onMoment }: { comparison: ComparisonResult
                 setLast(i);
                 onMoment(moment.worst_s);
               }}>
-                <span class="number">{seconds(moment.worst_s, 2)}</span> {moment.what}: {short(moment.value, 3)} {moment.unit}
-                {moment.limit != null && `, limit ${short(moment.limit, 3)} ${moment.unit}`}
+                <span class="number">{seconds(moment.worst_s, 2)}</span> {faultText(moment)}
               </button>
             </li>
           ))}

@@ -1,10 +1,13 @@
 import { useEffect, useRef, useState } from "preact/hooks";
+import { faultText } from "./compare";
 import type { Connection } from "./connection";
 import { asSeen, isFree, type Look, lookParameters, lookWords } from "./look";
 import { Problems, Section, ShownCommand, Working } from "./parts";
 import type { Player } from "./player";
-import { bytes, command, seconds } from "./text";
+import type { ComparisonResult } from "./protocol";
+import { bytes, command, newtons, seconds } from "./text";
 import { alignedText } from "./time_axis";
+import { valueAt } from "./timeline";
 
 interface Exported {
   path: string;
@@ -27,6 +30,8 @@ const kOverlays: [string, string][] = [["full", "full"], ["small", "small"], ["n
 const kAligned: [string, string][] = [["path", "path of the tool, slowing one down"], ["contact", "first contact, slowing one down"], ["cut", "first cut, slowing one down"], ["clock", "both clocks, as they were recorded"]];
 /** How the command brings both together as they are seen here: at an event the page moves one of them, which the command says in seconds. */
 const seenAlign = (player: Player) => player.path ? "path" : player.offset === 0 ? "clock" : String(Number(player.offset.toFixed(6)));
+const kNoMoment = { name: "", fault: "" };
+const kNear = 2e-3; // of two times that are one moment [s]
 const kKept = 60000; // until a download has begun [ms]
 const kSlow: [string, string][] = [["cut", "cuts"], ["damage", "damage"], ["worst", "largest force and depth"]];
 
@@ -44,6 +49,20 @@ async function download(connection: Connection, path: string): Promise<void> {
 function filmName(path: string, beside: string | undefined, moment: string): string {
   const stem = (file: string) => file.replace(/\.ctpm$/, "");
   return `${beside === undefined ? stem(path) : `${stem(beside)}-beside-${stem(path).replace(/^.*\//, "")}`}${moment}.mp4`;
+}
+
+/** What a film around this moment of a pair is to say of the trainee: the worst moment that it is in, else both forces. Empty: nothing. */
+function faultAt(player: Player, comparison: ComparisonResult | null): string {
+  const time = player.timeOf(1), isIn = player.tracks.has(1) && !player.otherScene;
+  const far = ({ worst_s }: { worst_s: number }) => Math.abs(worst_s - time);
+  const [moment] = (comparison?.comparison.moments ?? []).filter((one) => far(one) < kNear || (one.from_s <= time && time <= one.to_s))
+    .sort((a, b) => far(a) - far(b));
+  if (isIn && moment) return faultText(moment);
+  const [expert, trainee] = [0, 1].map((stage) => {
+    const data = player.tracks.get(stage)?.timeline;
+    return data ? valueAt(data.force_n, data.duration_s, player.timeOf(stage)) : null;
+  });
+  return isIn && expert !== null && trainee !== null ? `force ${newtons(trainee)}, expert ${newtons(expert)}` : "";
 }
 
 /** An export that goes on, or is done. */
@@ -76,22 +95,24 @@ export function useExport(connection: Connection): ExportJob {
 }
 
 /** A video of what is seen. */
-export function ExportForm({ connection, player, look, job: { progress, result, error, start, cancel, fail } }: {
+export function ExportForm({ connection, player, look, comparison, job: { progress, result, error, start, cancel, fail } }: {
   connection: Connection;
   player: Player;
   look: Look;
+  comparison: ComparisonResult | null;
   job: ExportJob;
 }) {
   const { session } = player.tracks.get(0)!;
   const beside = player.tracks.get(1)?.session.path;
-  const [chosenOutput, setOutput] = useState<string | null>(null), [moment, setMoment] = useState("");
+  const [chosenOutput, setOutput] = useState<string | null>(null), [caption, setCaption] = useState("");
+  const [moment, setMoment] = useState(kNoMoment); // that the film is around
   const [from, setFrom] = useState("0"), [to, setTo] = useState("");
   const [speed, setSpeed] = useState("1"), [fps, setFps] = useState("30");
   const [size, setSize] = useState(kSizes[0]), [overlay, setOverlay] = useState("full"), [chosenAlign, setAlign] = useState("seen");
   const [isAsSeen, setAsSeen] = useState(true);
   const [slow, setSlow] = useState<string[]>([]), [isDifferentShown, showDifferent] = useState(false);
 
-  const wanted = chosenOutput ?? filmName(session.path, beside, moment);
+  const wanted = chosenOutput ?? filmName(session.path, beside, moment.name);
   const [unused, setUnused] = useState({ by: "", name: "" }); // what is wanted, and what it may be called
   useEffect(() => {
     if (progress) return;
@@ -108,18 +129,24 @@ export function ExportForm({ connection, player, look, job: { progress, result, 
   const slowAt = beside ? "" : slow.join(",");
   const params = {
     path: session.path, beside, output, from_s: number(from), to_s: number(to), speed: number(speed), fps: number(fps), size, overlay,
-    align: beside && align, slow_at: slowAt || undefined, allow_diverged: isDifferentShown, ...lookParameters(filmed),
+    align: beside && align, slow_at: slowAt || undefined, caption: caption.trim() || undefined, allow_diverged: isDifferentShown, ...lookParameters(filmed),
   };
   const around = () => {
     const end = Math.floor(100 * session.info.duration_s) / 100; // one that is rounded up is after the session
     setFrom(Math.max(0, Math.min(player.time, end) - 1).toFixed(2));
     setTo(Math.min(end, player.time + 1).toFixed(2));
-    setMoment(`-${Math.max(0, player.timeOf(beside ? 1 : 0)).toFixed(2)}s`);
+    goTo({ name: `-${Math.max(0, player.timeOf(beside ? 1 : 0)).toFixed(2)}s`, fault: faultAt(player, comparison) });
   };
+  /** A caption that nobody has written is that of the moment. */
+  const goTo = (to: typeof moment) => {
+    if (caption === moment.fault) setCaption(to.fault);
+    setMoment(to);
+  };
+  useEffect(() => goTo(kNoMoment), [beside]);
   const words = (flag: string, value: string, usual: string) => (value !== usual && value !== "" ? [flag, value] : []);
   const shown = command("export", session.path, "-o", output, ...(beside ? ["--beside", beside, "--align", align] : []),
     ...(number(from) ? ["--from-s", from] : []), ...words("--to-s", to, ""), ...words("--speed", speed, "1"), ...words("--fps", fps, "30"),
-    ...words("--size", size, kSizes[0]), ...words("--overlay", overlay, "full"), ...words("--slow-at", slowAt, ""),
+    ...words("--size", size, kSizes[0]), ...words("--overlay", overlay, "full"), ...words("--slow-at", slowAt, ""), ...words("--caption", caption.trim(), ""),
     ...(isDifferentShown ? ["--allow-diverged"] : []), ...lookWords(filmed));
   const field = (label: string, value: string, set: (value: string) => void, type = "text") => (
     <label class="field">
@@ -144,8 +171,8 @@ export function ExportForm({ connection, player, look, job: { progress, result, 
       {field("file in the folder: .mp4, .avi", output, setOutput)}
       {isTaken && <p class="warning">{output} exists already; {unused.name} does not.</p>}
       <div class="pair">
-        {field("from [s]", from, (text) => (setFrom(text), setMoment("")), "number")}
-        {field("to [s]", to, (text) => (setTo(text), setMoment("")), "number")}
+        {field("from [s]", from, (text) => (setFrom(text), goTo(kNoMoment)), "number")}
+        {field("to [s]", to, (text) => (setTo(text), goTo(kNoMoment)), "number")}
       </div>
       <button type="button" onClick={around}>1 s before {seconds(player.time, 2)} to 1 s after</button>
       <div class="pair">
@@ -171,7 +198,8 @@ export function ExportForm({ connection, player, look, job: { progress, result, 
         {choice("size", size, setSize, kSizes.map((s): [string, string] => [s, s.replace("x", " × ")]))}
         {choice("overlay", overlay, setOverlay, kOverlays)}
       </div>
-      <p class="hint">What happens is told in the picture unless the overlay is none, and in an .mp4 as subtitles and chapters too.</p>
+      {field(beside ? "caption, in the trainee's half in place of what happens" : "caption, in place of what happens", caption, setCaption)}
+      <p class="hint">{caption.trim() ? "The caption stands" : "What happens is told"} in the picture unless the overlay is none, and in an .mp4 as subtitles and chapters too.</p>
       {session.info.physics_remark && tick("even if the replay differs, marked on every frame", isDifferentShown, showDifferent)}
       <ShownCommand text={shown} />
       <div class="always-seen">

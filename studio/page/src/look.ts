@@ -41,6 +41,12 @@ export function isPlain(look: Look): boolean {
   return look.view === "surface" && !look.cutaway && look.camera !== "follow";
 }
 
+/** What is drawn of a session, in words. */
+export function lookText(look: Look): string {
+  return [kViews.find(([name]) => name === viewOf(look))?.[1], look.cutaway && `cut across ${look.cutaway.slice(0, 1)}`, look.camera === "follow" && "camera follow"]
+    .filter(Boolean).join(", ");
+}
+
 export function isFree(look: Look): boolean {
   return look.camera.includes(":");
 }

@@ -74,7 +74,7 @@ export function Moment({ connection, player, frame, other }: { connection: Conne
           ["replayed after", player.replayedAfter === null ? "…" : `${player.replayedAfter.toFixed(0)} ms`]]} />
       </Section>
       {other && <Section title="Trainee"><Readings rows={rows(other, 1)} /></Section>}
-      {[...player.tracks.values()].map((track) => <Events key={track.stage} player={player} track={track} />)}
+      {[...player.tracks.values()].sort((a, b) => a.stage - b.stage).map((track) => <Events key={track.stage} player={player} track={track} />)}
       <Section title="Session">
         <Readings rows={[
           ["recorded", info.created_utc.replace("T", " ").replace("Z", " UTC") || "its time of day was taken out"],

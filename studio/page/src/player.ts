@@ -229,6 +229,7 @@ export class Player {
   async see(look: Look, size: string, onSeen: (seen: Seen, as: Look) => void): Promise<void> {
     this.look = look;
     this.wanted = { look, size };
+    this.onTime();
     if (this.isLooking) return;
     this.isLooking = true;
     try {
@@ -244,6 +245,7 @@ export class Player {
       }
     } finally {
       this.isLooking = false;
+      this.onTime();
     }
   }
 
@@ -271,6 +273,12 @@ export class Player {
   /** Whether a replayed picture was asked for that is not there yet. */
   get isWaiting(): boolean {
     return this.waiting.size > 0;
+  }
+
+  /** Whether the picture that is shown is an older one until the program has drawn what was asked for. */
+  get isDrawing(): boolean {
+    const isByProgram = !isPlain(this.look) || this.drawings.size > 0;
+    return isByProgram && (this.isLooking || this.isWaiting) && !this.isPlaying;
   }
 
   /** What an address needs to lead here again. */

@@ -4,18 +4,19 @@ import type { Connection } from "./connection";
 import { Compare } from "./compare";
 import { drawInto, sizeOf, watchSize } from "./drawing";
 import { ExportForm, useExport } from "./export_form";
-import { freeCamera, isFree, kPlainLook, type Look, mirrored, planeOf } from "./look";
+import { freeCamera, isFree, kPlainLook, type Look, lookText, mirrored, planeOf } from "./look";
 import { LegendBar, LookFields } from "./look_fields";
+import { marksOf } from "./marks";
 import { NotesPanel, useNotes } from "./notes";
-import { Moment, shownEvents } from "./moment";
+import { Moment } from "./moment";
 import { Panel } from "./panel";
 import { Empty, Problems } from "./parts";
 import type { Place } from "./place";
 import { Player, type Track } from "./player";
 import type { ComparisonResult, Legend, Listing } from "./protocol";
 import { Clocks, ownTime } from "./time_axis";
-import { Mark, Timeline } from "./timeline";
-import { bytes, seconds } from "./text";
+import { Timeline } from "./timeline";
+import { bytes } from "./text";
 import { kTurns, Viewer } from "./viewer";
 
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4];
@@ -122,7 +123,7 @@ export function Review({ connection, listing, place, onPlace }: {
   }, [player]);
 
   const first = player?.tracks.get(0), second = player?.tracks.get(1);
-  const [notes, takeNotes] = useNotes(connection, [...(player?.tracks.values() ?? [])].map(({ session }) => session.path), panel === "notes");
+  const notes = useNotes(connection, [...(player?.tracks.values() ?? [])].map(({ session }) => session.path), panel === "notes");
   const frame = first?.scene.frame ?? null, other = second?.scene.frame ?? null;
 
   // The program says from where it is seen, unless a hand has turned the view.
@@ -190,18 +191,7 @@ export function Review({ connection, listing, place, onPlace }: {
     return () => removeEventListener("keydown", press);
   }, [player]);
 
-  const marks = useMemo<Mark[]>(() => {
-    if (!first) return [];
-    const of = (stage: number, own: number, kind: string, text: string): Mark =>
-      ({ stage, time: stage === 0 ? own : player!.firstAt(own), kind, title: `${seconds(own)} ${text}` });
-    return [...player!.tracks.values()].flatMap(({ stage, session: { path, info } }) => {
-      const read = notes[path];
-      return [
-        ...shownEvents(info.events).map((e) => of(stage, e.tick * info.tick_s, e.kind, e.text)),
-        ...(!read || read instanceof Error ? [] : read.notes).map((note) => of(stage, note.time_s, "note", note.text)),
-      ];
-    });
-  }, [first, second, notes, version]);
+  const marks = useMemo(() => (first ? marksOf(player!, notes.all, comparison) : []), [first, second, notes.all, comparison, version]);
 
   const contentOf = (shown: Player, { session }: Track): Record<PanelName, ComponentChildren> => ({
     moment: <Moment connection={connection} player={shown} frame={frame} other={other} />,
@@ -209,8 +199,8 @@ export function Review({ connection, listing, place, onPlace }: {
       <Compare connection={connection} player={shown} listing={listing} comparison={comparison} onComparison={setComparison}
         onBeside={openBeside} onSwap={() => void swap()} />
     ),
-    notes: <NotesPanel connection={connection} player={shown} all={notes} onNotes={takeNotes} />,
-    export: <ExportForm key={session.path} connection={connection} player={shown} look={look} job={exporting} />,
+    notes: <NotesPanel player={shown} notes={notes} />,
+    export: <ExportForm key={session.path} connection={connection} player={shown} look={look} comparison={comparison} job={exporting} />,
   });
 
   return (
@@ -257,6 +247,7 @@ export function Review({ connection, listing, place, onPlace }: {
             <LookFields look={look} onLook={chooseLook} onOtherSide={otherSide} view={first.session.view} />
           </div>
         )}
+        {player?.isDrawing && <p class="busy drawing" role="status">drawing: {lookText(player.look)} …</p>}
         {player?.isPlaying && player.reached < 0.9 * player.speed && (
           <p class="busy pace">plays at {player.reached.toFixed(2)} ×: this machine simulates no faster</p>
         )}

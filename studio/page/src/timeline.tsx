@@ -1,16 +1,10 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import uPlot from "uplot";
+import { classOf, type Mark, MarkLegend } from "./marks";
 import type { Player } from "./player";
 import type { TimelineData } from "./protocol";
 import { seconds } from "./text";
 import { alignedText, ownTime, TimeAxes, Whose } from "./time_axis";
-
-export interface Mark {
-  stage: number;
-  time: number; // of stage 0 [s]
-  kind: string;
-  title: string; // with the time of its own session
-}
 
 interface Row {
   title: string;
@@ -43,7 +37,7 @@ function mostIn(values: number[], duration: number, from: number, to: number): n
 }
 
 /** The value at a moment: of the part that ends there, as the picture shows the tick that was done last. */
-function valueAt(values: number[], duration: number, time: number): number | null {
+export function valueAt(values: number[], duration: number, time: number): number | null {
   const middle = time - duration / values.length / 2;
   return time < 0 ? null : mostIn(values, duration, Math.max(0, middle), Math.max(0, middle));
 }
@@ -189,11 +183,12 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
 
   return (
     <div class="timeline" role="group" aria-label="Timeline">
+      <MarkLegend marks={marks} />
       {[...player.tracks.keys()].sort().map((stage) => (
         <div key={stage} class="marks" aria-hidden="true">
           {player.tracks.has(1) && <Whose stage={stage} />}
           {marks.filter((mark) => mark.stage === stage && mark.time >= from && mark.time <= to).map((mark, i) => (
-            <button key={i} type="button" tabIndex={-1} class={`mark ${mark.kind.replaceAll(" ", "-")}`} title={mark.title}
+            <button key={i} type="button" tabIndex={-1} class={classOf(mark)} title={mark.title}
               style={{ "--at": String(shareOf(mark.time)) }} onClick={() => player.move(mark.time)} />
           ))}
         </div>

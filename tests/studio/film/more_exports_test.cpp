@@ -130,6 +130,45 @@ TEST_F(MoreExports, InsetsShowTheToolFromNearAndTheTissueOpenedAtIt) {
   EXPECT_TRUE(holds(wrong.err, "--inset: error: got 'far', must be near or section")) << wrong.err;
 }
 
+TEST_F(MoreExports, ACaptionStandsFromTheFirstPictureToTheLastInTheRightHalfOfAPair) {
+  const std::string fault = "force above the limit: 3.13 N, limit 2 N";
+  const auto films = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> part{"--from-s", "2",     "--to-s",  "2.1", "--fps",    "10",
+                                  "--beside", kClumsy, "--align", "cut", "--camera", "0,-300,200:0,0,20"};
+    part.insert(part.end(), more.begin(), more.end());
+    const auto exported = export_to(name, {kExpert}, part);
+    EXPECT_EQ(exported.code, 0) << exported.err;
+  };
+  films("plain/", {}), films("told/", {"--caption", fault}), films("told.mp4", {"--caption", fault});
+  for (const char* file : {"000001.png", "000002.png"}) {
+    const render::Frame plain = picture(std::string("plain/") + file), told = picture(std::string("told/") + file);
+    ASSERT_EQ(plain.rgb.size(), told.rgb.size());
+    int left = 0, right = 0;
+    for (std::size_t i = 0; i < told.rgb.size(); ++i)
+      (i / 3 % std::size_t(told.width) < std::size_t(told.width) / 2 ? left : right) += plain.rgb[i] != told.rgb[i];
+    EXPECT_EQ(left, 0) << file;
+    EXPECT_GT(right, 1000) << file;
+  }
+  const auto words =
+      testing::run({"ffmpeg", "-v", "error", "-i", "told.mp4", "-map", "0:s:0", "told.srt"}, folder_.path());
+  ASSERT_EQ(words.code, 0) << words.err;
+  const std::string subtitles = slurp(folder_.path() / "told.srt");
+  const auto count = [&](const std::string& part) {
+    int times = 0;
+    for (std::size_t at = 0; (at = subtitles.find(part, at)) != std::string::npos; ++at) ++times;
+    return times;
+  };
+  EXPECT_GT(count(" --> "), 0);
+  EXPECT_EQ(count("right (kidney-cut-clumsy): " + fault), count(" --> ")) << "in each of them: " << subtitles;
+
+  const auto long_winded = export_to("a.mp4", {kExpert}, {"--caption", std::string(201, 'a')});
+  EXPECT_EQ(long_winded.code, 2);
+  EXPECT_TRUE(holds(long_winded.err, "--caption: error: has 201 bytes")) << long_winded.err;
+  const auto sheet = export_to("a.png", {kExpert}, {"--caption", fault});
+  EXPECT_EQ(sheet.code, 2);
+  EXPECT_TRUE(holds(sheet.err, "--caption: error: ")) << sheet.err;
+}
+
 TEST_F(MoreExports, ACameraMakesRoomForPanelsUnlessSomebodyPlacedIt) {
   const auto middle_of = [&](const char* camera, const char* overlay) {
     std::vector<std::string> options{"--at-s", "2.5", "--overlay", overlay};

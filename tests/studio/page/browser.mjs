@@ -190,6 +190,34 @@ export async function openStudio(folder, port = 0, ...more) {
   return { page, address, complaints, close, kill, starve, limitFiles, ended: () => (server.exitCode ?? server.signalCode ?? ended(server)), startAgain, call, hand: () => sent, handsSent: () => count, live, handAtRest, quiet };
 }
 
+/** Lets a test keep back what the program sends, as a loaded machine would: from the next load on the page's global `holds`, while it is
+    there, says of a message whether it is kept, and `letGo()` lets the page have what was kept, in order. */
+export async function keepBack(page) {
+  await page.addInitScript(() => {
+    const kept = [];
+    globalThis.WebSocket = class extends WebSocket {
+      constructor(...of) {
+        super(...of);
+        this.addEventListener("message", (event) => {
+          if (!globalThis.holds?.(event.data)) return;
+          event.stopImmediatePropagation();
+          kept.push(() => this.dispatchEvent(new MessageEvent("message", { data: event.data })));
+        });
+      }
+    };
+    globalThis.letGo = () => {
+      globalThis.holds = undefined;
+      for (const give of kept.splice(0)) give();
+    };
+    globalThis.keptCount = () => kept.length;
+  });
+}
+
+/** The words of a command as a shell reads them. */
+export function wordsOf(command) {
+  return [...command.matchAll(/(?:'[^']*'|[^\s'])+/g)].map(([word]) => word.replaceAll("'", ""));
+}
+
 /** Reads until what was read is as it should be; the last that was read. */
 export async function until(read, isRight, seconds = 20) {
   for (const began = Date.now(); ; await new Promise((resolve) => setTimeout(resolve, 50))) {

@@ -3,11 +3,11 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
-import { ctpm, ctpmBeside, leave, makeFolder, openStudio, outOfReach, picture, pixelsOf, rareStep, seenFirst, seriousFindings, step } from "./browser.mjs";
+import { ctpm, ctpmBeside, keepBack, leave, makeFolder, openStudio, outOfReach, picture, pixelsOf, rareStep, seenFirst, seriousFindings, step, wordsOf } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm", kOther = "liver-press-expert.ctpm";
 let folder, studio, page, expert, clumsy;
-let path, command; // moments of both along the path, as the page got them, and the command that compares
+let path, command; // moments of both along the path, and the command that compares
 
 /** When an event of that kind first happened [s]. */
 function firstOf(info, kind) {
@@ -19,9 +19,7 @@ before(async () => {
   [expert, clumsy] = [kExpert, kClumsy].map((name) => JSON.parse(ctpm(folder, "info", name, "--json").out));
   studio = await openStudio(folder);
   page = studio.page;
-  page.on("websocket", (socket) => socket.on("framereceived", ({ payload }) => {
-    if (typeof payload === "string" && payload.includes('"path_s"')) path = JSON.parse(payload).result.path_s;
-  }));
+  await keepBack(page);
   await page.reload();
   await page.click("header nav button:has-text('Review')");
 });
@@ -31,6 +29,9 @@ after(() => leave(studio, folder));
 const clock = async () => Number.parseFloat(await page.locator(".clock").innerText());
 const ahead = async () => Number(await page.locator("#panel input[type=number]").inputValue());
 const offsetAt = (kind) => Number((firstOf(clumsy, kind) - firstOf(expert, kind)).toFixed(3));
+
+/** Waits until the trainee's session is shown at a time that is told to 10 ms. */
+const untilTrainee = (time) => page.waitForFunction((time) => Math.abs(Number(/([-\d.]+) s$/.exec(document.querySelector(".captions .second").textContent)?.[1]) - time) < 6e-3, time);
 
 step("of sessions of two scenes it is said at once that they cannot be compared", async () => {
   await page.click(".list button:has-text('kidney-cut-expert')");
@@ -85,15 +86,21 @@ step("from a pair of sessions to a video of its worst moment", async () => {
   assert.ok(seen.advice && seen.moments >= Math.min(3, seen.of) && seen.measuresAfter, JSON.stringify(seen));
   await picture(page, "review-compared");
   const worst = page.locator("#panel .jumps button").first(), when = Number.parseFloat(await worst.innerText());
+  const fault = (await worst.innerText()).replace(/^[\d.]+ s /, "");
   await worst.click();
-  await page.waitForFunction((shown) => document.querySelector(".captions .second").textContent.includes(shown), ` ${when.toFixed(2)}`);
+  await untilTrainee(when);
   const [shown, there] = (await page.locator(".captions b").allInnerTexts()).map((text) => / ([-\d.]+) s$/.exec(text)[1]);
   await page.click("#tab-export");
   // Nothing chosen, the video has both beside each other as they are here.
   assert.equal(Number(/--align (\S+)/.exec(await page.locator("#panel .command code").innerText())[1]).toFixed(3), (Number(there) - Number(shown)).toFixed(3));
   await page.locator('#panel .field:has-text("file in the folder") input').fill("worst.avi");
   await page.locator('#panel .field:has-text("pictures a second") input').fill("10");
+  await page.locator('#panel .field:has-text("size") select').selectOption("854x480");
   await page.click("#panel button:has-text('1 s before')");
+  // The film says what is wrong, in the words of the page.
+  const caption = page.locator('#panel .field:has-text("caption") input');
+  assert.equal(await caption.inputValue(), fault);
+  assert.equal(wordsOf(await page.locator("#panel .command code").innerText()).at(-3), fault); // before the camera
   await page.click("#panel button.main");
   await page.waitForSelector("#panel .good:has-text('worst.avi')");
   console.log(`a video of the worst moment ${((Date.now() - began) / 1e3).toFixed(1)} s after the comparison was opened`);
@@ -102,7 +109,7 @@ step("from a pair of sessions to a video of its worst moment", async () => {
   assert.ok(readFileSync(join(folder, "worst.avi")).length > 1e4);
   // The next one is not to be where that one is: its name has the moment, and none that is taken is exported to.
   const name = page.locator('#panel .field:has-text("file in the folder") input'), of = `${kClumsy}-beside-${kExpert}`.replaceAll(".ctpm", "");
-  await page.waitForFunction((name) => document.querySelector("#panel .field input").value === name, `${of}-${there.slice(0, -1)}s.mp4`);
+  await page.waitForFunction((name) => document.querySelector("#panel .field input").value === name, `${of}-${Number(there).toFixed(2)}s.mp4`);
   await name.fill("worst.avi");
   await page.waitForSelector("#panel .warning:has-text('worst.avi exists already; worst-2.avi does not')");
   assert.ok(await page.locator("#panel button.main").isDisabled());
@@ -121,24 +128,25 @@ step("two sessions beside each other, compared", async () => {
   await page.click("#panel button:has-text('first cut')");
   const offset = offsetAt("cut");
   assert.equal(await ahead(), offset);
-  const worst = await page.locator("#panel .jumps button").first().innerText();
-  const limits = (await page.locator("#panel .jumps button").allInnerTexts()).filter((moment) => moment.includes("limit"));
+  const moments = await page.locator("#panel .jumps button").allInnerTexts(), late = moments.findIndex((moment) => Number.parseFloat(moment) - offset > expert.duration_s);
+  const limits = moments.filter((moment) => moment.includes("limit"));
   for (const moment of limits) assert.match(moment, / (\S+), limit [\d.]+ \1$/, "a limit has the unit of what goes beyond it");
   assert.ok(limits.length > 0);
-  // It is after the first session's end: both are shown at the same place of the path.
-  assert.ok(Number.parseFloat(worst) - offset > expert.duration_s);
-  await page.locator("#panel .jumps button").first().click();
-  await page.waitForFunction((shown) => document.querySelector(".captions .second").textContent.includes(shown), ` ${Number.parseFloat(worst).toFixed(2)}`);
+  // One that is after the first session's end: both are shown at the same place of the path.
+  assert.ok(late >= 0);
+  await page.locator("#panel .jumps button").nth(late).click();
+  await untilTrainee(Number.parseFloat(moments[late]));
   assert.ok((await clock()) <= expert.duration_s);
   // The command prints the same, and the program answers the same advice again.
   const printed = (await command).out;
-  const { comparison: { advice } } = await studio.call("session.compare", { expert: kExpert, trainee: kClumsy });
+  const { comparison: { advice }, path_s } = await studio.call("session.compare", { expert: kExpert, trainee: kClumsy });
+  path = path_s;
   assert.deepEqual(await page.locator("#panel .advice li").allInnerTexts(), advice);
   for (const line of advice) assert.ok(printed.includes(line), `${line} is not in: ${printed}`);
   // Without their units, which the page writes smaller.
   const names = await page.locator("#panel tbody th").evaluateAll((cells) => cells.map((cell) => cell.firstChild.textContent.trim()));
   for (const name of names) assert.ok(printed.includes(name.split(" ").slice(0, 2).join(" ")), name);
-  assert.ok(printed.includes(worst.replace(/^[\d.]+ s\s*/, "").split(":")[0]));
+  assert.ok(printed.includes(moments[0].replace(/^[\d.]+ s\s*/, "").split(":")[0]));
   assert.deepEqual(await seriousFindings(page), []);
   await picture(page, "review-compare");
 });
@@ -160,12 +168,32 @@ step("what chooses a panel stays while it is scrolled", async () => {
 
 step("what happened in each session is marked at its place, and listed", async () => {
   await page.click("#tab-moment");
-  const rows = await page.locator(".marks").evaluateAll((all) => all.map((row) => [...row.querySelectorAll(".mark")].map(({ title }) => title)));
+  const marks = (which) => page.locator(".marks").evaluateAll((all, which) => all.map((row) => [...row.querySelectorAll(which)].map(({ title }) => title)), which);
+  const rows = await marks(".mark:not(.worst-moment)"), worst = await marks(".mark.worst-moment");
   const lists = await page.locator("#panel section:has(h2:has-text('Events'))").evaluateAll((all) => all.map((list) => [...list.querySelectorAll("li")].map(({ textContent }) => textContent)));
   const told = [expert, clumsy].map(({ events, tick_s }) => events.filter(({ kind }) => kind !== "late tick").map(({ tick, text }) => `${(tick * tick_s).toFixed(3)} s ${text}`));
   assert.ok(told.every((each) => each.length > 2));
   assert.deepEqual(lists, told);
   assert.deepEqual(rows, told);
+  // The worst moments are the trainee's.
+  await page.click("#tab-compare");
+  const found = (await page.locator("#panel .of-trainee button").allInnerTexts()).map((text) => text.replace(/^[\d.]+ s /, ""));
+  assert.deepEqual(worst.map((row) => row.map((title) => title.replace(/^[\d.]+ s /, ""))), [[], found]);
+  // What each mark means is said, of the kinds that are there, beside marks that look like those.
+  const looks = await page.evaluate(() => {
+    const look = (mark) => {
+      const { backgroundColor, borderTopWidth, borderTopColor, borderRadius, clipPath, transform } = getComputedStyle(mark);
+      return [backgroundColor, borderTopWidth === "0px" ? "" : borderTopColor, borderRadius, clipPath, transform].join();
+    };
+    const of = (marks) => [...new Set([...marks].map(look))].sort();
+    return [...document.querySelectorAll(".mark-legend li")].map((item) => {
+      const kind = item.textContent;
+      return { kind, there: of(document.querySelectorAll(`.marks .mark.${kind.replaceAll(" ", "-")}`)), here: of(item.querySelectorAll(".mark")) };
+    });
+  });
+  assert.deepEqual(new Set(looks.map(({ kind }) => kind)), new Set(["worst moment", ...[expert, clumsy].flatMap(({ events }) => events.map(({ kind }) => kind)).filter((kind) => kind !== "late tick")]));
+  for (const { kind, there, here } of looks) assert.ok(there.length > 0 && String(there) === String(here), `${kind}: ${here}, and on the timeline ${there}`);
+  await page.click("#tab-moment");
   // A press on the trainee's goes to its own moment.
   await page.locator("#panel section:has(h2:has-text('trainee')) li button").last().click();
   await page.waitForFunction((time) => document.querySelector(".clock-beside").textContent.startsWith(time), told[1].at(-1).split(" ")[0]);
@@ -388,11 +416,68 @@ step("notes stay, and a link leads to the moment", async () => {
   await page.waitForSelector("#panel .jumps button:has-text('hurried')");
   const beside = JSON.parse(readFileSync(join(folder, "kidney-cut-clumsy.notes.json"), "utf8")).notes;
   assert.ok(both.includes(beside[0].time_s.toFixed(3)) && beside[0].time_s !== time, `${both} and ${beside[0].time_s}`);
+  // Other words for one, and none: deleted, it can be had back.
+  const words = () => page.locator("#panel .jumps li button:first-child").evaluateAll((all) => all.map((button) => button.lastChild.textContent));
+  const written = () => JSON.parse(readFileSync(join(folder, "kidney-cut-clumsy.notes.json"), "utf8")).notes;
+  const button = (text) => page.locator(`#panel section button:text-is("${text}")`), editor = page.locator("#panel .note-editor textarea");
+  await button("edit").click();
+  assert.ok(await editor.evaluate((field) => field === document.activeElement));
+  await editor.fill("  ");
+  assert.ok(await button("Save").isDisabled(), "a note has words, as one that is added");
+  await page.keyboard.press("Escape");
+  await editor.waitFor({ state: "detached" });
+  await page.waitForFunction(() => document.activeElement.textContent === "edit");
+  await page.keyboard.press("Enter");
+  await editor.fill("hurried, and too deep");
+  await picture(page, "review-note-edited");
+  await page.keyboard.press("Control+Enter");
+  await editor.waitFor({ state: "detached" });
+  assert.deepEqual(written(), [{ ...beside[0], text: "hurried, and too deep" }]);
+  await page.click("#panel button[aria-label^='Delete']");
+  await button("Undo").waitFor();
+  assert.deepEqual(written(), []);
+  await button("Undo").click();
+  await button("Undo").waitFor({ state: "detached" });
+  assert.deepEqual(written(), [{ ...beside[0], text: "hurried, and too deep" }]);
+  // Somebody else writes meanwhile: that is said and shown, and neither their words nor those that are being written are lost.
+  const byOthers = async (change) => {
+    const { revision, notes: now } = await studio.call("notes.read", { path: kClumsy });
+    await studio.call("notes.write", { path: kClumsy, revision, notes: change(now) });
+  };
+  await button("edit").click();
+  await editor.fill("mine");
+  await byOthers((now) => [...now, { time_s: 0.5, text: "theirs" }]);
+  await button("Save").click();
+  await page.waitForSelector("#panel .problems:has-text('changed by somebody else; nothing was written')");
+  assert.deepEqual((await words()).sort(), ["hurried, and too deep", "theirs"]);
+  assert.equal(await editor.inputValue(), "mine");
+  await byOthers((now) => now.filter(({ text }) => text === "theirs"));
+  await button("Save").click();
+  await page.waitForSelector("#panel .note-editor .warning:has-text('Somebody else changed or deleted this note')");
+  await picture(page, "review-note-conflict");
+  assert.deepEqual(await seriousFindings(page), []);
+  await button("Save").click();
+  await editor.waitFor({ state: "detached" });
+  assert.deepEqual(written().map(({ text }) => text).sort(), ["mine", "theirs"]);
+  // What was read before a note was written, and comes after it, hides none.
+  await page.click("#tab-moment");
+  await page.evaluate(() => (globalThis.holds = (data) => typeof data === "string" && data.includes('"revision"') && globalThis.keptCount() < 2));
+  await page.click("#tab-notes");
+  await page.waitForFunction(() => globalThis.keptCount() === 2); // one list of each session
+  await page.fill("#panel textarea", "hurried");
+  await button("Add note").click();
+  await page.waitForSelector("#panel .jumps button:has-text('hurried')");
+  await page.evaluate(() => globalThis.letGo());
+  await studio.quiet();
+  assert.equal(await page.locator("#panel .jumps button:has-text('hurried')").count(), 1);
   // Those of both are marked at once when they are opened again.
   await page.click("#tab-compare");
   await page.reload();
   for (const text of ["too steep", "hurried"]) await page.waitForSelector(`.mark.note[title*='${text}']`);
   assert.equal(await page.locator("#tab-notes[aria-selected=true]").count(), 0);
+  // Whichever of them was read first, the expert's is told of first.
+  await page.click("#tab-moment");
+  assert.deepEqual(await page.locator("#panel h2:has-text('Events')").allTextContents(), ["Events, expert", "Events, trainee"]);
 });
 
 step("an export is the one that the shown command makes, and can be cancelled", async () => {
@@ -402,7 +487,7 @@ step("an export is the one that the shown command makes, and can be cancelled", 
     await studio.quiet(); // the camera that the program chose has come: what is shown is what will be exported
     const shown = await page.locator("#panel .command code").innerText();
     for (const option of options) assert.ok(shown.includes(option), shown);
-    const command = ctpmBeside(folder, ...shown.split(" ").slice(1).map((word) => (word === `${name}.avi` ? `${name}-command.avi` : word)));
+    const command = ctpmBeside(folder, ...wordsOf(shown).slice(1).map((word) => (word === `${name}.avi` ? `${name}-command.avi` : word)));
     await page.click("#panel button.main");
     await page.waitForSelector(`#panel .good:has-text("${name}.avi")`);
     assert.equal((await command).code, 0);
@@ -426,12 +511,20 @@ step("an export is the one that the shown command makes, and can be cancelled", 
   assert.equal(await field("file in the folder").inputValue(), `${kClumsy.replace(".ctpm", "")}-beside-${kExpert.replace(".ctpm", "")}.mp4`);
   const press = await page.locator("#panel button.main").boundingBox();
   assert.ok(press.y + press.height <= page.viewportSize().height, `what exports is seen without scrolling: ${JSON.stringify(press)}`);
+  // Where it is around a moment that no limit is exceeded at, it says what both forces are there, until it is around another time.
+  const [own, theirs] = (await page.locator(".plots div[data-title='force [N]']").getAttribute("data-at")).split(" · ");
+  await page.click("#panel button:has-text('1 s before')");
+  assert.equal(await field("caption").inputValue(), `force ${theirs} N, expert ${own} N`);
+  await field("from [s]").fill("0");
+  await field("to [s]").fill("");
+  assert.equal(await field("caption").inputValue(), "");
   // It is seen as it is here, unless the command is to choose.
   assert.match(await page.locator("#panel .command code").innerText(), / --camera [-\d.]+,[-\d.]+,[-\d.]+:[-\d.]+,[-\d.]+,[-\d.]+(:| |$)/);
   await choose("camera", "");
   assert.doesNotMatch(await page.locator("#panel .command code").innerText(), /--camera/);
   await choose("camera", "seen");
   assert.doesNotMatch(await page.locator("#panel .command code").innerText(), /--(overlay|slow-at|fps|size|speed|from-s|to-s)/);
+  await choose("size", "854x480"); // which is drawn sooner
   // Aligned by hand, it says by how much.
   await page.click("#tab-compare");
   await page.locator("#panel input[type=number]").fill("-0.4");
@@ -448,7 +541,8 @@ step("an export is the one that the shown command makes, and can be cancelled", 
   await field("pictures a second").fill("10");
   await choose("bring both together", "cut");
   await choose("overlay", "small");
-  await makesWhatItShows("both", ["--align cut", "--overlay small", "--fps 10", `--beside ${kClumsy}`]);
+  await field("caption").fill("too steep");
+  await makesWhatItShows("both", ["--align cut", "--overlay small", "--fps 10", "--caption 'too steep'", `--beside ${kClumsy}`]);
   await picture(page, "review-export");
   // One of them.
   await page.click("#tab-compare");
@@ -458,7 +552,6 @@ step("an export is the one that the shown command makes, and can be cancelled", 
   await field("from [s]").fill("0.6");
   await field("to [s]").fill("0.9");
   await field("pictures a second").fill("10");
-  await choose("size", "854x480");
   for (const moment of ["damage", "cuts"]) await page.click(`#panel fieldset label:has-text("${moment}")`);
   await makesWhatItShows("one", ["--slow-at cut,damage", "--fps 10", "--size 854x480"]);
   // The film is a press away.

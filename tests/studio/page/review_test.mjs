@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
-import { ctpm, ctpmBeside, leave, makeFolder, openStudio, overflow, paths, picture, pixelsOf, reading, seriousFindings, step, until } from "./browser.mjs";
+import { ctpm, ctpmBeside, keepBack, leave, makeFolder, openStudio, overflow, paths, picture, pixelsOf, reading, seriousFindings, step, until } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm";
 let folder, studio, page, expert;
@@ -24,6 +24,7 @@ before(async () => {
       }
     };
   });
+  await keepBack(page);
   await page.reload();
   await page.click("header nav button:has-text('Review')");
 });
@@ -66,10 +67,11 @@ step("a session opens, and any moment of it is a press away", async () => {
 });
 
 step("what happened is marked on the timeline, at its time", async () => {
-  const marks = await page.locator(".mark").evaluateAll((all) => all.map((mark) => [mark.title, Number(mark.style.getPropertyValue("--at"))]));
+  const marks = await page.locator(".marks .mark").evaluateAll((all) => all.map((mark) => [mark.title, Number(mark.style.getPropertyValue("--at"))]));
   const events = expert.events.filter(({ kind }) => kind !== "late tick"); // of the machine, not of the hand
   assert.ok(events.some(({ kind }) => kind === "cut") && events.some(({ kind }) => kind === "contact begins"));
   assert.deepEqual(marks.map(([title]) => title), events.map(({ tick, text }) => `${(tick * expert.tick_s).toFixed(3)} s ${text}`));
+  assert.deepEqual(await page.locator(".mark-legend li").allInnerTexts(), [...new Set(events.map(({ kind }) => kind))]);
   for (const [i, { tick }] of events.entries()) assert.ok(Math.abs(marks[i][1] - (tick * expert.tick_s) / expert.duration_s) < 1e-6, marks[i][0]);
 });
 
@@ -234,9 +236,30 @@ step("views, cutaway and cameras are those of export", async () => {
   await choose("camera", "");
   const firstCamera = await until(camera, isApart, 60);
   assert.ok(isApart(firstCamera), `${firstCamera} from ${turnedCamera}`);
+  // Until the program has drawn it, it is said that it does.
+  const notice = page.locator(".view .drawing"), isKept = () => page.evaluate(() => void (globalThis.holds = () => true));
+  const comes = async () => {
+    await page.evaluate(() => globalThis.letGo());
+    await drawing();
+    await notice.waitFor({ state: "detached" });
+  };
+  await isKept();
   await choose("view", "spheres");
-  await drawing();
+  await notice.waitFor();
+  assert.equal(await notice.innerText(), "drawing: spheres …");
+  assert.equal(await page.locator(".drawings canvas:not([hidden])").count(), 0, "the picture before is still there");
+  await picture(page, "review-drawing");
+  await comes();
   const seen = new Set([await pixels()]);
+  await isKept();
+  await page.locator(".scrub").evaluate((slider) => {
+    for (const at of ["2.5", "2.6"]) {
+      slider.value = at;
+      slider.dispatchEvent(new Event("input", { bubbles: true }));
+    }
+  });
+  await notice.waitFor();
+  await comes();
   await picture(page, "review-spheres");
   for (const [label, value] of [["view", "elements tilt"], ["view", "surface"], ["cutaway", "y"], ["camera", "follow"]]) {
     await choose(label, value);

@@ -35,7 +35,7 @@ TEST(PlainText, HasTheLettersOfPictures) {
 TEST(Overlay, TextsNeitherOverlapNorLeaveThePicture) {
   render::OverlayData long_winded = full_data();
   long_winded.title = std::string(200, 'W'), long_winded.verdict = std::string(300, 'M');
-  long_winded.caption = std::string(200, 'W');
+  long_winded.caption = std::string(100, 'W') + " " + std::string(99, 'W');
   long_winded.tick = 999999999, long_winded.time = 99999.999, long_winded.hand.force = 12345.678;
   render::OverlayData two_hands = long_winded;
   two_hands.second = render::HandLoad{12345.678, 0.0134, true}, two_hands.slip = 99.9;
@@ -76,7 +76,14 @@ TEST(Overlay, ACaptionHasTheRoomBesideThePlot) {
   }
 }
 
-TEST(Overlay, ACaptionOfAStillThatIsTooLongForALineHasTwo) {
+TEST(Overlay, ACaptionThatIsTooLongForALineHasTwo) {
+  render::OverlayData told = full_data();
+  told.caption = "cut where the expert did not: 12 elements, limit 0 elements";
+  for (const auto& [width, height] : {std::pair{1280, 720}, {640, 720}, {240, 270}}) {
+    std::string said;
+    for (const render::PlacedText& text : render::Overlay(width, height).layout(told)) said += text.text + " ";
+    EXPECT_NE(said.find(told.caption), std::string::npos) << width << ": " << said;
+  }
   render::OverlayData data = full_data();
   data.caption = "3.10 s  tissue damage: deeper than 12 mm", data.level = render::OverlayLevel::caption;
   render::Overlay overlay(320, 240, 1.4);  // a picture of a contact sheet

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <thread>
 
 #include "core/contact/drawn_surfaces.h"
 #include "recordings/replay.h"
@@ -255,6 +256,24 @@ TEST_F(Reviewing, NotesLieBesideTheSessionWhichNeverChanges) {
   EXPECT_TRUE(
       client.call("notes.write", {{"path", kPress}, {"revision", "none"}, {"notes", notes}}).contains("errors"));
   EXPECT_EQ(testing::slurp(folder_.path() / "liver-press-expert.notes.json"), "{");
+}
+
+TEST_F(Reviewing, OfTwoThatWriteNotesAtTheSameTimeOneIsRefused) {
+  const Serving serving(folder_.path());
+  SocketClient clients[2] = {SocketClient(serving), SocketClient(serving)};
+  for (int round = 0; round < 20; ++round) {
+    const nlohmann::json revision = clients[0].call("notes.read", {{"path", kCut}})["result"]["revision"];
+    nlohmann::json answers[2];
+    const auto write = [&](int who) {
+      const nlohmann::json notes = {{{"time_s", who}, {"text", std::to_string(round) + " by " + std::to_string(who)}}};
+      answers[who] = clients[who].call("notes.write", {{"path", kCut}, {"revision", revision}, {"notes", notes}});
+    };
+    std::thread first(write, 0);
+    write(1), first.join();
+    ASSERT_NE(answers[0].contains("result"), answers[1].contains("result")) << answers[0] << answers[1];
+    const nlohmann::json& written = answers[answers[0].contains("result") ? 0 : 1];
+    EXPECT_EQ(clients[0].call("notes.read", {{"path", kCut}})["result"], written["result"]);
+  }
 }
 
 TEST_F(Reviewing, AnExportIsTheCommandsAndCanBeCancelled) {
