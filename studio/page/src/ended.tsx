@@ -7,6 +7,10 @@ import type { Place } from "./place";
 import { type Comparable, type ComparisonResult, type EndedTraining, type Listing, problemText, type SceneOfSession } from "./protocol";
 import { behind, command, millimetres, newtons, seconds, tickRows, underMs } from "./text";
 
+/** "machine 9, solver 3": what made steps late, the most frequent cause first. */
+const causes = (lateBy: { [cause: string]: number }) =>
+  Object.entries(lateBy).sort((a, b) => b[1] - a[1]).map(([cause, count]) => `${cause} ${count}`).join(", ");
+
 const kPoseWait = "From the moment when the page sent where the hand is until a tick took it";
 
 /** What became of a session: its numbers, its verdict, and how it compares with the expert's. */
@@ -82,7 +86,7 @@ export function Ended({ connection, listing, scenes, sceneKey, ended, expert, on
               ["severed", `${ended.severed} elements`],
             ]} />
             <OfMachine says={ended.slip_s ? `${seconds(ended.slip_s, 1)} behind the clock` : "kept up"} rows={[
-              ["late steps", String(ended.late_ticks)],
+              ["late steps", `${ended.late_ticks}${ended.late_ticks ? ` (${causes(ended.late_by ?? {})})` : ""}`],
               ["behind the clock", behind(ended.slip_s ?? 0, ended.slip_max_s ?? 0)],
               ...tickRows(ended.tick_time_p50_s ?? 0, ended.tick_time_p99_s ?? 0, ended.tick_s ?? 1e-3),
               ["half of the poses", underMs(ended.pose_wait_p50_s ?? 0, 1), kPoseWait],

@@ -199,6 +199,7 @@ export interface EndedTraining {
   tick_s?: number;
   ticks?: number;
   late_ticks?: number;
+  late_by?: { [cause: string]: number };
   slip_s?: number;
   slip_max_s?: number;
   fault?: string;
