@@ -289,6 +289,10 @@ step("along the path both tools are at the same place of it, and by hand as far 
   await byHand(0.25);
   assert.deepEqual(await scrubTo(2), [2, 2.25]);
   assert.equal(await page.locator("#panel [aria-label='Align at'] button[aria-pressed=true]").count(), 0);
+  // What is being typed stays while pictures come.
+  await page.locator("#panel input[type=number]").fill("0.3");
+  await scrubTo(2.1);
+  assert.equal(await page.locator("#panel input[type=number]").inputValue(), "0.3");
   // Not so far that nothing of both is left beside each other.
   for (const [asked, limit, word] of [[9999, clumsy.duration_s - 0.1, "more"], [-9999, 0.1 - expert.duration_s, "less"]]) {
     await byHand(asked);
