@@ -18,6 +18,7 @@ export function Compare({ connection, player, listing, comparison, onComparison,
 }) {
   const [error, setError] = useState<Error | null>(null);
   const [progress, setProgress] = useState<[number, number] | null>(null);
+  const [typed, setTyped] = useState<string | null>(null); // until it is whole: a picture that comes meanwhile puts no other number in its place
   const running = useRef<AbortController | null>(null), top = useRef<HTMLDivElement>(null);
   const first = player.tracks.get(0)!.session, second = player.tracks.get(1)?.session;
 
@@ -84,8 +85,9 @@ export function Compare({ connection, player, listing, comparison, onComparison,
             </div>
             <label class="field">
               <span>by hand: the trainee's clock shows more by [s]</span>
-              <input type="number" step="0.01" value={player.path ? "" : Number(player.offset.toFixed(3))}
-                onChange={(e) => player.setOffset(Number(e.currentTarget.value) || 0)} />
+              <input type="number" step="0.01" value={typed ?? (player.path ? "" : Number(player.offset.toFixed(3)))}
+                onInput={(e) => setTyped(e.currentTarget.value)} onBlur={() => setTyped(null)}
+                onChange={(e) => (player.setOffset(Number(e.currentTarget.value) || 0), setTyped(null))} />
             </label>
             {progress ? <Working what="comparing" done={progress[0]} total={progress[1]} onCancel={() => running.current?.abort()} />
               : <button type="button" class={comparison ? "" : "main"} disabled={isOther} onClick={() => void compare()}>{comparison ? "Compare again" : "Compare"}</button>}

@@ -51,18 +51,18 @@ function filmName(path: string, beside: string | undefined, moment: string): str
   return `${beside === undefined ? stem(path) : `${stem(beside)}-beside-${stem(path).replace(/^.*\//, "")}`}${moment}.mp4`;
 }
 
-/** What a film around this moment of a pair is to say of the trainee: the worst moment that it is in, else both forces. Empty: nothing. */
+/** What a film around this moment is to say of a pair's trainee: the worst moment that it is in, else both forces. Empty: nothing. */
 function faultAt(player: Player, comparison: ComparisonResult | null): string {
-  const time = player.timeOf(1), isIn = player.tracks.has(1) && !player.otherScene;
-  const far = ({ worst_s }: { worst_s: number }) => Math.abs(worst_s - time);
+  if (!player.tracks.has(1) || player.otherScene) return "";
+  const time = player.timeOf(1), far = ({ worst_s }: { worst_s: number }) => Math.abs(worst_s - time);
   const [moment] = (comparison?.comparison.moments ?? []).filter((one) => far(one) < kNear || (one.from_s <= time && time <= one.to_s))
     .sort((a, b) => far(a) - far(b));
-  if (isIn && moment) return faultText(moment);
+  if (moment) return faultText(moment);
   const [expert, trainee] = [0, 1].map((stage) => {
     const data = player.tracks.get(stage)?.timeline;
     return data ? valueAt(data.force_n, data.duration_s, player.timeOf(stage)) : null;
   });
-  return isIn && expert !== null && trainee !== null ? `force ${newtons(trainee)}, expert ${newtons(expert)}` : "";
+  return expert !== null && trainee !== null ? `force ${newtons(trainee)}, expert ${newtons(expert)}` : "";
 }
 
 /** An export that goes on, or is done. */

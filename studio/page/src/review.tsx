@@ -247,7 +247,7 @@ export function Review({ connection, listing, place, onPlace }: {
             <LookFields look={look} onLook={chooseLook} onOtherSide={otherSide} view={first.session.view} />
           </div>
         )}
-        {player?.isDrawing && <p class="busy drawing" role="status">drawing: {lookText(player.look)} …</p>}
+        {player?.isDrawing && !error && <p class="busy drawing" role="status">drawing: {lookText(player.look)} …</p>}
         {player?.isPlaying && player.reached < 0.9 * player.speed && (
           <p class="busy pace">plays at {player.reached.toFixed(2)} ×: this machine simulates no faster</p>
         )}

@@ -4,6 +4,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { ctpm, ctpmBeside, keepBack, leave, makeFolder, openStudio, outOfReach, picture, pixelsOf, rareStep, seenFirst, seriousFindings, step, wordsOf } from "./browser.mjs";
+import { changeNotes } from "./reviewer_page.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm", kClumsy = "kidney-cut-clumsy.ctpm", kOther = "liver-press-expert.ctpm";
 let folder, studio, page, expert, clumsy;
@@ -289,6 +290,10 @@ step("along the path both tools are at the same place of it, and by hand as far 
   await byHand(0.25);
   assert.deepEqual(await scrubTo(2), [2, 2.25]);
   assert.equal(await page.locator("#panel [aria-label='Align at'] button[aria-pressed=true]").count(), 0);
+  // What is being typed stays while pictures come.
+  await page.locator("#panel input[type=number]").fill("0.3");
+  await scrubTo(2.1);
+  assert.equal(await page.locator("#panel input[type=number]").inputValue(), "0.3");
   // Not so far that nothing of both is left beside each other.
   for (const [asked, limit, word] of [[9999, clumsy.duration_s - 0.1, "more"], [-9999, 0.1 - expert.duration_s, "less"]]) {
     await byHand(asked);
@@ -416,60 +421,7 @@ step("notes stay, and a link leads to the moment", async () => {
   await page.waitForSelector("#panel .jumps button:has-text('hurried')");
   const beside = JSON.parse(readFileSync(join(folder, "kidney-cut-clumsy.notes.json"), "utf8")).notes;
   assert.ok(both.includes(beside[0].time_s.toFixed(3)) && beside[0].time_s !== time, `${both} and ${beside[0].time_s}`);
-  // Other words for one, and none: deleted, it can be had back.
-  const words = () => page.locator("#panel .jumps li button:first-child").evaluateAll((all) => all.map((button) => button.lastChild.textContent));
-  const written = () => JSON.parse(readFileSync(join(folder, "kidney-cut-clumsy.notes.json"), "utf8")).notes;
-  const button = (text) => page.locator(`#panel section button:text-is("${text}")`), editor = page.locator("#panel .note-editor textarea");
-  await button("edit").click();
-  assert.ok(await editor.evaluate((field) => field === document.activeElement));
-  await editor.fill("  ");
-  assert.ok(await button("Save").isDisabled(), "a note has words, as one that is added");
-  await page.keyboard.press("Escape");
-  await editor.waitFor({ state: "detached" });
-  await page.waitForFunction(() => document.activeElement.textContent === "edit");
-  await page.keyboard.press("Enter");
-  await editor.fill("hurried, and too deep");
-  await picture(page, "review-note-edited");
-  await page.keyboard.press("Control+Enter");
-  await editor.waitFor({ state: "detached" });
-  assert.deepEqual(written(), [{ ...beside[0], text: "hurried, and too deep" }]);
-  await page.click("#panel button[aria-label^='Delete']");
-  await button("Undo").waitFor();
-  assert.deepEqual(written(), []);
-  await button("Undo").click();
-  await button("Undo").waitFor({ state: "detached" });
-  assert.deepEqual(written(), [{ ...beside[0], text: "hurried, and too deep" }]);
-  // Somebody else writes meanwhile: that is said and shown, and neither their words nor those that are being written are lost.
-  const byOthers = async (change) => {
-    const { revision, notes: now } = await studio.call("notes.read", { path: kClumsy });
-    await studio.call("notes.write", { path: kClumsy, revision, notes: change(now) });
-  };
-  await button("edit").click();
-  await editor.fill("mine");
-  await byOthers((now) => [...now, { time_s: 0.5, text: "theirs" }]);
-  await button("Save").click();
-  await page.waitForSelector("#panel .problems:has-text('changed by somebody else; nothing was written')");
-  assert.deepEqual((await words()).sort(), ["hurried, and too deep", "theirs"]);
-  assert.equal(await editor.inputValue(), "mine");
-  await byOthers((now) => now.filter(({ text }) => text === "theirs"));
-  await button("Save").click();
-  await page.waitForSelector("#panel .note-editor .warning:has-text('Somebody else changed or deleted this note')");
-  await picture(page, "review-note-conflict");
-  assert.deepEqual(await seriousFindings(page), []);
-  await button("Save").click();
-  await editor.waitFor({ state: "detached" });
-  assert.deepEqual(written().map(({ text }) => text).sort(), ["mine", "theirs"]);
-  // What was read before a note was written, and comes after it, hides none.
-  await page.click("#tab-moment");
-  await page.evaluate(() => (globalThis.holds = (data) => typeof data === "string" && data.includes('"revision"') && globalThis.keptCount() < 2));
-  await page.click("#tab-notes");
-  await page.waitForFunction(() => globalThis.keptCount() === 2); // one list of each session
-  await page.fill("#panel textarea", "hurried");
-  await button("Add note").click();
-  await page.waitForSelector("#panel .jumps button:has-text('hurried')");
-  await page.evaluate(() => globalThis.letGo());
-  await studio.quiet();
-  assert.equal(await page.locator("#panel .jumps button:has-text('hurried')").count(), 1);
+  await changeNotes(studio, folder, kClumsy, beside[0]);
   // Those of both are marked at once when they are opened again.
   await page.click("#tab-compare");
   await page.reload();
