@@ -2,6 +2,7 @@
 
 #include "scenes/presets.h"
 #include "scenes/scene_file.h"
+#include "studio/output/option_name.h"
 
 namespace ctpm::authoring {
 namespace {
@@ -14,7 +15,7 @@ Result<std::size_t> find_organ(const loading::LoadedScene& scene, const std::str
     if (name.empty() || own == name) return i;
     known += (known.empty() ? "" : ", ") + own;
   }
-  return Error{scene.path, "the scene has no organ '" + name + "'", "it has: " + known};
+  return Error{output::option_name("fit.organ"), "the scene has no organ '" + name + "'", "it has: " + known};
 }
 
 /// Whether the paper's Table 1 has the forces of a material.

@@ -35,6 +35,7 @@ constexpr std::pair<std::string_view, const char*> kFlags[] = {
     {"exchange.at_s", "--at-s"},
     {"export.at_s", "--at-s"},
     {"fidelity.recipes", "--only"},
+    {"fit.organ", "--organ"},
     {"import.anchors", "--anchor"},
     {"import.largest_hole_mm", "--largest-hole-mm"},
     {"import.layers", "--layer"},

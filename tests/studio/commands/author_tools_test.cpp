@@ -130,6 +130,9 @@ TEST_F(AuthorTools, AFitSaysWhetherThePaperHasTheForcesOfATissue) {
     EXPECT_EQ(other.find("Table 1"), std::string::npos) << other;
     EXPECT_NE(other.find(none), std::string::npos) << other;
   }
+  const auto refused = ctpm({"fit", "block.json", "--organ", "blok"});
+  EXPECT_EQ(refused.code, 2);
+  expect_says(refused.err, {"--organ", "has no organ 'blok'", "it has: block"});
 }
 
 TEST_F(AuthorTools, APreviewColoursSpheresByWhatTheyAreMadeOf) {
