@@ -13,7 +13,8 @@
 namespace ctpm::compare {
 namespace {
 
-constexpr double kOfAll = 100;  // severity of what is wrong with the whole stroke: more than that of any part of it
+constexpr double kUndone = 0.5;  // of what the expert cut
+constexpr double kOfAll = 100;   // severity of what is wrong with the whole stroke: more than that of any part of it
 
 struct Sentence {
   Concern concern;
@@ -61,15 +62,17 @@ void add_moments(std::vector<Sentence>& sentences, const std::vector<Moment>& mo
   using enum MomentKind;
   for (const MomentKind kind : {zone, stray_cut, force, depth, deviation, pause}) {
     const Moment* worst = nullptr;
-    double seconds = 0, sum = 0;
+    double seconds = 0, sum = 0, severities = 0;
     std::size_t count = 0;
     for (const Moment& moment : moments)
       if (moment.kind == kind) {
         if (!worst) worst = &moment;  // they are sorted
-        seconds += moment.to_s - moment.from_s, sum += moment.value, ++count;
+        seconds += moment.to_s - moment.from_s, sum += moment.value, severities += moment.severity, ++count;
       }
-    if (worst)
-      sentences.push_back({concern_of(*worst), worst->severity, to_sentence(*worst, seconds, sum, count, trainee)});
+    if (!worst) continue;
+    Moment told = *worst;
+    if (kind == stray_cut) told.severity = severities;  // what is cut stays cut, in one stroke or in several
+    sentences.push_back({concern_of(told), told.severity, to_sentence(told, seconds, sum, count, trainee)});
   }
 }
 
@@ -81,18 +84,21 @@ void add_cut(std::vector<Sentence>& sentences, const SessionTrack& expert, const
     if (expert.severed_at[i] >= 0) ++severed, whole += trainee.severed_at[i] < 0;
   if (trainee.cuts.empty()) {
     sentences.push_back(
-        {Concern::accuracy, kOfAll, "Cut: the expert severed " + number(severed) + " elements, this hand none."});
+        {Concern::undone, kOfAll, "Cut: the expert severed " + number(severed) + " elements, this hand none."});
     return;
   }
   if (severed > 0 && whole > kNotableShare * severed)
-    sentences.push_back({Concern::accuracy, whole / severed,
+    sentences.push_back({whole > kUndone * severed ? Concern::undone : Concern::accuracy, whole / severed,
                          "Complete the cut: " + number(whole) + " of the " + number(severed) +
                              " elements that the expert severed were left whole."});
   if (!expert.cut || !trainee.cut) return;
   // Not from the nearest surface: in a cut through most of an organ that is the far side.
   const double own = trainee.cut->along_blade, wanted = expert.cut->along_blade;
   if (const double more = own - wanted; std::abs(more) > kNotableShare * wanted)
-    sentences.push_back({more < 0 ? Concern::accuracy : Concern::harm, std::abs(more) / wanted,
+    sentences.push_back({more > 0                 ? Concern::harm
+                         : own < kUndone * wanted ? Concern::undone
+                                                  : Concern::accuracy,
+                         std::abs(more) / wanted,
                          std::string("Cut ") + (more < 0 ? "deeper: " : "less deep: ") + number(1e3 * own) +
                              " mm, the expert " + number(1e3 * wanted) + " mm."});
 }

@@ -183,9 +183,8 @@ const char* to_word(MomentKind kind) {
 }
 
 Concern concern_of(const Moment& moment) {
-  // Where a tool should not have been is no trifle, and what is cut stays cut.
+  // Where a tool should not have been is no trifle.
   if (moment.kind == MomentKind::zone) return Concern::forbidden;
-  if (moment.kind == MomentKind::stray_cut) return Concern::harm;
   if (moment.severity < kTrifle) return Concern::trifle;
   if (moment.kind == MomentKind::deviation) return Concern::accuracy;
   return moment.kind == MomentKind::pause ? Concern::economy : Concern::harm;

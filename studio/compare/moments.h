@@ -17,10 +17,11 @@ HandMotion hand_motion(const SessionTrack& track, const Spell& stroke);
 /// Why something should be done better, the gravest reason first.
 enum class Concern {
   forbidden,  ///< the tool was where the scene forbids it
+  undone,     ///< not half of what the expert cut is cut: whatever else was wrong is of another stroke
   harm,       ///< to the tissue: cut where the expert did not, pressed too hard or too deep
   accuracy,   ///< off the expert's path, less deep, not complete
   economy,    ///< time
-  trifle,     ///< less than 5 % beyond a limit, or beyond it for a few ticks
+  trifle,     ///< less than 5 % beyond a limit, or beyond it for a few ticks; few elements beside the expert's cut
 };
 Concern concern_of(const Moment& moment);
 

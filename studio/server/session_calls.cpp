@@ -159,6 +159,7 @@ Result<std::string> are_comparable(Parameters& parameters, const CallContext& co
 Result<std::string> compare_sessions(Parameters& parameters, const CallContext& context) {
   const std::string expert = parameters.text("expert"), trainee = parameters.text("trainee");
   const std::optional<double> force_limit = parameters.number_if("force_limit_n", 1e-6, 1e6);
+  const bool only_known = parameters.flag("only_known", false);
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
   const Result<std::string> expert_file = context.folder.find(expert), trainee_file = context.folder.find(trainee);
   for (const auto* file : {&expert_file, &trainee_file})
@@ -177,6 +178,7 @@ Result<std::string> compare_sessions(Parameters& parameters, const CallContext& 
                                (options.is_trainee_known ? " trainee known" : "");
   if (context.comparisons)
     if (const std::optional<std::string> known = context.comparisons->find(question, read)) return *known;
+  if (only_known) return std::string("null");
   const Result<compare::ComparedFiles> files = compare::compare_files(std::move(*opened), options);
   if (!files) return files.errors();
   const compare::ComparedSessions compared = files->sessions();

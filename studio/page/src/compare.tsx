@@ -6,6 +6,11 @@ import { firstOf, type Player } from "./player";
 import type { ComparisonResult, Listing, MeasureRow, Moment } from "./protocol";
 import { command, seconds, short } from "./text";
 
+/** What a comparison of two sessions found that nobody changed since; null: they were not compared, or cannot be. */
+export function knownComparison(connection: Connection, expert: string, trainee: string): Promise<ComparisonResult | null> {
+  return connection.call<ComparisonResult | null>("session.compare", { expert, trainee, only_known: true }).catch(() => null);
+}
+
 /** The session beside: which one, how the two are aligned, and how they differ. */
 export function Compare({ connection, player, listing, comparison, onComparison, onBeside, onSwap }: {
   connection: Connection;

@@ -1,5 +1,5 @@
 import { useEffect, useRef, useState } from "preact/hooks";
-import { Measures, Outcome } from "./compare";
+import { knownComparison, Measures, Outcome } from "./compare";
 import type { Connection } from "./connection";
 import { ExpertChoice } from "./expert_choice";
 import { OfMachine, Problems, Readings, Section, ShownCommand, Working } from "./parts";
@@ -38,9 +38,11 @@ export function Ended({ connection, listing, scenes, sceneKey, ended, expert, on
   useEffect(() => {
     let isWanted = true;
     setOtherScene(""), setComparison(null);
-    if (expert && path)
+    if (expert && path) {
       connection.call<Comparable>("session.comparable", { expert, trainee: path })
         .then(({ text }) => isWanted && setOtherScene(text), (failure) => isWanted && setError(failure));
+      void knownComparison(connection, expert, path).then((known) => isWanted && known && setComparison(known));
+    }
     return () => void (isWanted = false);
   }, [expert, path]);
   const isCompared = expert !== "" && otherScene === "";
@@ -82,7 +84,7 @@ export function Ended({ connection, listing, scenes, sceneKey, ended, expert, on
               ["recorded as", path || "not recorded"],
               ["duration", seconds(ended.ticks * (ended.tick_s ?? 1e-3), 1)],
               ["largest force", newtons(ended.max_force_n ?? 0)],
-              ["largest depth", ended.max_depth_m ? millimetres(ended.max_depth_m, 2) : "–", "Of a ball; how deep a cut is the comparison says"],
+              ["deepest press", ended.max_depth_m ? millimetres(ended.max_depth_m, 2) : "–", "Of a ball; how deep a cut is the comparison says"],
               ["severed", `${ended.severed} elements`],
             ]} />
             <OfMachine says={ended.slip_s ? `${seconds(ended.slip_s, 1)} behind the clock` : "kept up"} rows={[

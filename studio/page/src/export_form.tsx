@@ -175,6 +175,7 @@ export function ExportForm({ connection, player, look, comparison, job: { progre
         {field("to [s]", to, (text) => (setTo(text), goTo(kNoMoment)), "number")}
       </div>
       <button type="button" onClick={around}>1 s before {seconds(player.time, 2)} to 1 s after</button>
+      {beside && <p class="hint">These times are by the expert's clock.</p>}
       <div class="pair">
         {field("times real speed", speed, setSpeed, "number")}
         {field("pictures a second", fps, setFps, "number")}

@@ -51,6 +51,7 @@ export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScen
       {(item.shape === "ball" || item.shape === "scalpel") && (
         <>
           {vector(item.isWritten ? "taken up at" : "taken up at (not written: above the organs)", ["at_mm"], place)}
+          {item.path.at(-1) !== 0 && <p class="hint">A training begins with the first tool. This one is taken up where the hand is then.</p>}
           {item.isWritten && vector("pointing", ["pointing"], [0, 0, -1], "direction", 0.1)}
           {item.isWritten && item.shape === "scalpel" && vector("facing, along the blade", ["facing"], new three.Vector3(1, 0, 0).applyQuaternion(item.turn).toArray().map((x) => Math.round(1e3 * x) / 1e3 + 0), "direction", 0.1)}
           {item.shape === "ball" ? number("radius", ["radius_mm"], mm(item.size.x)) : number("length of the blade", ["blade_length_mm"], 40, "mm", 1)}

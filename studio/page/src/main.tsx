@@ -127,8 +127,8 @@ function App() {
             <p><button type="button" class="main" onClick={() => location.reload()}>Load the page again</button></p>
           </Empty>
         ) : isClosed ? (
-          <Empty title={connection ? "The studio has ended" : "This address is of another run"}>
-            <p>{connection ? "Start it again" : "Open the address that the program printed, or start it"}: <code>{command("studio", listing?.folder)}</code>. Where its address is opened, here or in
+          <Empty title={connection ? "The studio has ended" : "The program does not answer at this address"}>
+            <p>{connection ? "Start it again" : "An address holds the key of one run: open the one that the program printed, or start it"}: <code>{command("studio", listing?.folder)}</code>. Where its address is opened, here or in
               another tab, this page goes on. Scenes that were not saved are kept as drafts, and a session that was being recorded is there up to its last whole second: <code>{command("recover", "SESSION.ctpm", "-o", "saved.ctpm")}</code></p>
           </Empty>
         ) : connection && listing ? (

@@ -11,6 +11,7 @@ export interface Mark {
   time: number; // of stage 0 [s]
   kind: string;
   title: string; // with the time of its own session
+  onPress?: () => void; // in place of going to its time
 }
 
 /** Those of all sessions that are shown. The worst moments are the trainee's. */
@@ -20,8 +21,9 @@ export function marksOf(player: Player, notes: ReadNotes, comparison: Comparison
       ({ stage, time: stage === 0 ? own : player.firstAt(own), kind, title: `${seconds(own)} ${text}` });
     const read = notes[path];
     return [
-      ...shownEvents(info.events).map((e) => of(e.tick * info.tick_s, e.kind, e.text)),
-      ...(stage === 1 && comparison ? comparison.comparison.moments : []).map((moment) => of(moment.worst_s, "worst moment", faultText(moment))),
+      ...shownEvents(info).map((e) => of(e.tick * info.tick_s, e.kind, e.text)),
+      ...(stage === 1 && comparison ? comparison.comparison.moments : []).map((moment) =>
+        ({ ...of(moment.worst_s, "worst moment", faultText(moment)), onPress: () => player.moveBeside(moment.worst_s, comparison!) })),
       ...(!read || read instanceof Error ? [] : read.notes).map((note) => of(note.time_s, "note", note.text)),
     ];
   });

@@ -5,9 +5,18 @@ import type { Player, Track } from "./player";
 import type { SessionEvent } from "./protocol";
 import { behind, command, millimetres, newtons, seconds, tickRows } from "./text";
 
+const kNoticed = 0.25; // a device that is away for less interrupts nobody [s]
+
 /** What happened in a session; late ticks are counted elsewhere. */
-export function shownEvents(events: SessionEvent[]): SessionEvent[] {
-  return events.filter((event) => event.kind !== "late tick");
+export function shownEvents({ events, tick_s }: { events: SessionEvent[]; tick_s: number }): SessionEvent[] {
+  const hidden = new Set<SessionEvent>();
+  let lost: SessionEvent | null = null;
+  for (const event of events) {
+    if (event.kind === "late tick") hidden.add(event);
+    if (event.kind === "device back" && lost && (event.tick - lost.tick) * tick_s < kNoticed) hidden.add(lost).add(event);
+    if (event.kind.startsWith("device ")) lost = event.kind === "device lost" ? event : null;
+  }
+  return events.filter((event) => !hidden.has(event));
 }
 
 export type ShownFrame = { force: number[]; depth: number; contacts: number; severed: number; isSame: boolean; isGlimpse: boolean; missed: number; tick: number; tool: number; second: { force: number[]; depth: number; tool: number } | null } | null;
@@ -17,7 +26,7 @@ function Events({ player, track: { stage, session: { info } } }: { player: Playe
   return (
     <Section title={player.tracks.size < 2 ? "Events" : stage === 0 ? "Events, expert" : "Events, trainee"}>
       <ul class="jumps">
-        {shownEvents(info.events).map((event, i) => {
+        {shownEvents(info).map((event, i) => {
           const time = event.tick * info.tick_s;
           return (
             <li key={i}>
@@ -80,7 +89,7 @@ export function Moment({ connection, player, frame, other }: { connection: Conne
           ["recorded", info.created_utc.replace("T", " ").replace("Z", " UTC") || "its time of day was taken out"],
           ["tissue", `${info.spheres} spheres`],
           ["largest force", newtons(info.max_force_n)],
-          ["largest depth", millimetres(info.max_depth_m, 2)],
+          ["deepest press", millimetres(info.max_depth_m, 2)],
           ...tickRows(info.tick_time_p50_s, info.tick_time_p99_s, info.tick_s),
           ["late steps", String(info.late_ticks)],
           ["behind the clock", behind(info.slip_s, info.slip_max_s)],

@@ -1,7 +1,7 @@
 import type { ComponentChildren } from "preact";
 import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
-import { Compare } from "./compare";
+import { Compare, knownComparison } from "./compare";
 import { drawInto, sizeOf, watchSize } from "./drawing";
 import { ExportForm, useExport } from "./export_form";
 import { freeCamera, isFree, kPlainLook, type Look, lookText, mirrored, planeOf } from "./look";
@@ -123,6 +123,13 @@ export function Review({ connection, listing, place, onPlace }: {
   }, [player]);
 
   const first = player?.tracks.get(0), second = player?.tracks.get(1);
+  // Who comes back finds what was compared.
+  useEffect(() => {
+    if (!first || !second || comparison) return;
+    let isWanted = true;
+    void knownComparison(connection, first.session.path, second.session.path).then((known) => isWanted && known && setComparison(known));
+    return () => void (isWanted = false);
+  }, [first?.session.path, second?.session.path]);
   const notes = useNotes(connection, [...(player?.tracks.values() ?? [])].map(({ session }) => session.path), panel === "notes");
   const frame = first?.scene.frame ?? null, other = second?.scene.frame ?? null;
 

@@ -8,6 +8,8 @@ const kArrowPerNewton = 0.007; // [m/N]
 const kLongestArrow = 0.06; // [m]
 const kSteel: Vector = [0.5, 0.53, 0.57];
 const kHandle: Vector = [0.05, 0.055, 0.065];
+const kClear = 0.9, kInTheWay = 0.97; // cosines of the angle between a tool and the view along which it is seen: whole, and hardly
+const kLeast = 0.2; // opacity of a tool that is in the way
 const kCloth: Vector = [0.16, 0.22, 0.24]; // of obstacles
 export const kAnchored = "#7fb8ff"; // of spheres that never move
 const kBead = 0.5; // of a sphere's radius, where the surface is to be seen around it
@@ -42,10 +44,10 @@ export class StageScene {
   /** The shapes of tools, which frames move, and of obstacles, which never move. */
   setShapes(shapes: Shapes): void {
     for (const mesh of [...this.tools, ...this.obstacles]) this.scene.remove(mesh), mesh.geometry.dispose();
-    const steel = new three.MeshPhongMaterial({ vertexColors: true, specular: 0x777777, shininess: 70, side: three.DoubleSide });
+    const steel = () => new three.MeshPhongMaterial({ vertexColors: true, specular: 0x777777, shininess: 70, side: three.DoubleSide, transparent: true });
     const cloth = new three.MeshPhongMaterial({ vertexColors: true, specular: 0x111111, side: three.DoubleSide });
     this.tools = shapes.tools.map((shape) => {
-      const mesh = new three.Mesh(geometryOf(shape), steel);
+      const mesh = new three.Mesh(geometryOf(shape), steel());
       mesh.visible = false;
       return mesh;
     });
@@ -158,6 +160,19 @@ export class StageScene {
   /** Of the organs, only what faces a viewer is drawn. */
   drawFacing(viewer: three.Vector3): void {
     for (const organ of this.organs) organ.drawFacing(viewer);
+  }
+
+  /** Who looks along a tool sees the tissue through it. */
+  clearTools(viewer: three.Vector3): void {
+    for (const tool of this.tools) {
+      if (!tool.visible) continue;
+      tool.updateMatrixWorld();
+      const eye = tool.worldToLocal(viewer.clone()), along = eye.z / eye.length(); // its handle is along z
+      const share = Math.min(Math.max((along - kClear) / (kInTheWay - kClear), 0), 1);
+      const material = tool.material as three.MeshPhongMaterial;
+      material.opacity = 1 - share * (1 - kLeast);
+      material.depthWrite = share === 0;
+    }
   }
 
   /** A pale copy of a tool at a pose (tool, position, orientation w x y z); null: none. */

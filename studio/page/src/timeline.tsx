@@ -189,7 +189,7 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
           {player.tracks.has(1) && <Whose stage={stage} />}
           {marks.filter((mark) => mark.stage === stage && mark.time >= from && mark.time <= to).map((mark, i) => (
             <button key={i} type="button" tabIndex={-1} class={classOf(mark)} title={mark.title}
-              style={{ "--at": String(shareOf(mark.time)) }} onClick={() => player.move(mark.time)} />
+              style={{ "--at": String(shareOf(mark.time)) }} onClick={() => (mark.onPress ?? (() => player.move(mark.time)))()} />
           ))}
         </div>
       ))}

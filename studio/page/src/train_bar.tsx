@@ -10,7 +10,7 @@ function hintOf(trainer: Trainer, isTouch: boolean): string {
   if (trainer.awaited) return "the device leads · mouse and wheel: look around · C: next camera";
   const gamepad = trainer.hasGamepad ? "gamepad: left stick moves, triggers press and lift, right stick turns, shoulders: tool · " : "";
   if (isTouch) return `${gamepad}one finger: move · two: look around`;
-  return `${gamepad}mouse, arrows: move · Space: let go of the tool, or take it up · click: hold the mouse · wheel, PgUp, PgDn: depth · Q E, W S, A D: turn · right button: look · C: next camera${trainer.cameraName && ` (${trainer.cameraName})`}`;
+  return `${gamepad}mouse, arrows: move · Space: let go of the tool, or take it up · click: hold the mouse · wheel, PgUp, PgDn: away from you, to you · Q E, W S, A D: turn · right button: look · C: next camera${trainer.cameraName && `, now ${trainer.cameraName}`}`;
 }
 
 /** Below the picture of a training that runs: its end, its hands and tools, its clock. */

@@ -223,6 +223,7 @@ export class Viewer {
     scenes.forEach((stage, i) => {
       stage.scene.add(this.key, this.rim);
       if (this.quality.isByProcessor) stage.drawFacing(this.camera.position);
+      stage.clearTools(this.camera.position);
       this.picture.fill(i * part, part);
       this.renderer.render(stage.scene, this.camera);
     });

@@ -113,8 +113,27 @@ TEST_F(WorstMoments, HarmComesBeforePausesAndNoKindFillsTheList) {
   const std::vector<std::string> advice = compare::advice_of({expert, track, scene, comparison});
   ASSERT_EQ(advice.size(), 5u);
   EXPECT_EQ(advice[0], "Keep out of forbidden zones: 0.05 s in vessel at 0.20 s.");
-  const char* const begins[]{"Keep out", "Press more gently: 7 N", "Cut only where", "Complete the cut", "Go on"};
+  const char* const begins[]{"Keep out", "Complete the cut", "Press more gently: 7 N", "Cut only where", "Go on"};
   for (std::size_t i = 0; i < advice.size(); ++i) EXPECT_EQ(advice[i].find(begins[i]), 0u) << advice[i];
+}
+
+TEST_F(WorstMoments, OfAScratchItIsSaidFirstThatTheCutIsMissingAndLastThatItsRimIsBesideTheExperts) {
+  const auto cutting = [&](std::size_t first, std::size_t count, double along_blade) {
+    compare::SessionTrack track = with_rests(0);
+    for (std::size_t i = first; i < first + count; ++i) track.severed_at[i] = 700;
+    track.severed[700] = std::int32_t(count), track.cuts = {{700, 701}};
+    track.cut.emplace();
+    track.cut->along_blade = along_blade;
+    return track;
+  };
+  const compare::SessionTrack expert = cutting(0, 88, 0.0226), scratch = cutting(78, 12, 0.0023);
+  const compare::Comparison comparison = compare::compare_sessions(expert, scratch, scene_);
+  const recordings::SessionStart& scene = scene_;
+  const std::vector<std::string> advice = compare::advice_of({expert, scratch, scene, comparison});
+  ASSERT_EQ(advice.size(), 3u) << advice[0];
+  EXPECT_EQ(advice[0], "Cut deeper: 2.3 mm, the expert 22.6 mm.");
+  EXPECT_EQ(advice[1].find("Complete the cut: 78 of the 88"), 0u) << advice[1];
+  EXPECT_EQ(advice[2].find("Cut only where the expert cut: 2 severed"), 0u) << advice[2];
 }
 
 TEST_F(WorstMoments, ALimitThatIsAsGoodAsKeptComesLast) {
