@@ -61,6 +61,7 @@ function OrganFilling({ connection, scene, organ, name }: { connection: Connecti
       <label class="field slider">
         <span>radius <output>{radius} mm</output>, gap {gap} mm</span>
         <input type="range" min={0} max={steps} step={1} value={toStep(radius)} aria-valuetext={`${radius} mm`} onInput={(e) => set(e.currentTarget.valueAsNumber)} onChange={() => doc.commit()} />
+        <span class="ends" aria-hidden="true"><span>finer, slower</span><span>coarser, faster</span></span>
       </label>
       <div class="numbers" aria-busy={scene.isRefilling}>
         {shown && <Readings rows={[["spheres", String(shown.spheres)], ["never move", String(shown.anchored)]]} />}
@@ -69,7 +70,7 @@ function OrganFilling({ connection, scene, organ, name }: { connection: Connecti
           {[...layers].sort(([a], [b]) => a - b).map(([layer, count]) => (
             <li key={layer}><i style={{ background: cssOf(view?.organs[organ]?.layer_colours[layer - 1]) }} />layer {layer}<span class="number">{count}</span></li>
           ))}
-          {shown && shown.anchored > 0 && <li key="anchored"><i style={{ background: kAnchored }} />never moves</li>}
+          {shown && shown.anchored > 0 && <li key="anchored"><i style={{ background: kAnchored }} />never moves<span class="number">{shown.anchored}</span></li>}
         </ul>
       </div>
       <Fit connection={connection} scene={scene} organ={organ} name={name} radius={radius} />

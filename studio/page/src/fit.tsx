@@ -61,7 +61,7 @@ export function Fit({ connection, scene, organ, name, radius }: {
 }
 
 function FitResult({ result: { stiffness_scale: scale, is_of_table: isOfTable, rows } }: { result: Fitted }) {
-  const percent = (share: number) => `${(100 * share).toFixed(1)} %`;
+  const percent = (share: number) => `${(100 * share).toFixed(1).replace("-0.0", "0.0")} %`;
   return (
     <>
       <p class="good" role="status">Stiffness scale {Number(scale.toPrecision(6))}, fitted at 12 mm.</p>

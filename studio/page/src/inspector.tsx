@@ -35,7 +35,7 @@ export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScen
     <Section title={`${item.kind}: ${item.name}`} aside={onRemove && (
       <button type="button" class="quiet remove" onClick={() => onRemove(item)}>remove</button>
     )}>
-      <p class="hint">{kTurning}{item.place && ` Arrow keys move it by ${mm(kNudge)} mm, with Shift by ${mm(kFineNudge)} mm.`}</p>
+      <p class="hint">{kTurning}{item.place && ` Where its handle has the focus, arrow keys move it by ${mm(kNudge)} mm, with Shift by ${mm(kFineNudge)} mm.`}</p>
       {item.kind !== "anchor" && (
         <label class="field"><span>name</span>
           <input value={item.name} onInput={(e) => e.currentTarget.value && preview([[at("name"), e.currentTarget.value]])} onChange={done} />

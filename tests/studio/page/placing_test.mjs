@@ -159,7 +159,7 @@ step("a click on an organ's surface chooses the organ; a drag from there turns t
   assert.match(await chosen(), /probe: probe/i);
   // Arrow keys in the picture move what is chosen, as is said beside it.
   const hint = await page.locator("#panel .hint").first().innerText();
-  assert.match(hint, /drag turns the view, and the wheel zooms\. Arrow keys move it by 1 mm, with Shift by 0\.1 mm\./);
+  assert.match(hint, /drag turns the view, and the wheel zooms\. Where its handle has the focus, arrow keys move it by 1 mm, with Shift by 0\.1 mm\./);
   const place = async () => (await scene()).probes[0].at_mm, before = await text(), was = await place();
   for (const [key, way] of [["ArrowUp", 1], ["Shift+ArrowUp", 1.1]]) {
     await page.keyboard.press(key);
