@@ -98,6 +98,7 @@ export function OverPicture({ trainer, marks, isTouch, waits }: {
       {frame && (
         <div class="force-bar" role="meter" aria-label="Force" aria-valuemin={0} aria-valuemax={limit} aria-valuenow={Number(force.toFixed(2))}>
           <div ref={marks.bar} class={force > limit ? "over" : ""} />
+          <span class="full">{trainer.scene?.view.damage_force_n ? `harms from ${newtons(limit, 1)}` : newtons(limit, 0)}</span>
           <output>{newtons(force)}</output>
         </div>
       )}

@@ -223,6 +223,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
             <Section title="Expert">
               <ExpertChoice listing={listing.sessions.filter(({ path }) => path !== output)} scenes={scenes} sceneKey={sceneKey} expert={expert} onExpert={setChosenExpert} use="shown as a ghost" />
               {trainer.isExpertOfOtherScene && <p class="warning" role="alert">{expert} is of another scene than this one: its ghost is not shown, and it cannot be compared with.</p>}
+              {expert && !trainer.isExpertOfOtherScene && <p class="hint">The pale blue tool is the expert's: yours should go where it goes.</p>}
               {expert && !trainer.isExpertOfOtherScene && (
                 <label class="field">
                   <span>the ghost is</span>
