@@ -70,7 +70,7 @@ function OrganFilling({ connection, scene, organ, name }: { connection: Connecti
           {[...layers].sort(([a], [b]) => a - b).map(([layer, count]) => (
             <li key={layer}><i style={{ background: cssOf(view?.organs[organ]?.layer_colours[layer - 1]) }} />layer {layer}<span class="number">{count}</span></li>
           ))}
-          {shown && shown.anchored > 0 && <li key="anchored"><i style={{ background: kAnchored }} />never moves<span class="number">{shown.anchored}</span></li>}
+          {shown && shown.anchored > 0 && <li key="anchored"><i style={{ background: kAnchored }} />never moves</li>}
         </ul>
       </div>
       <Fit connection={connection} scene={scene} organ={organ} name={name} radius={radius} />

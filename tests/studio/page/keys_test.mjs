@@ -167,7 +167,7 @@ step("names of files and notes are text, in all rooms", async () => {
   await page.fill("#panel textarea", "<img src=y onerror=alert(3)>");
   await page.click("#panel button.main");
   await page.waitForSelector("#panel .jumps button:has-text('<img src=y')");
-  assert.equal(await page.locator(".mark.note").count(), 1);
+  assert.equal(await page.locator(".marks .mark.note").count(), 1);
   await page.click("#panel button:has-text('Copy the link')");
   await page.click("#tab-export");
   assert.match(await page.locator("#panel .command code").innerText(), /'<img src=x onerror=alert\(1\)>\.ctpm'/);
