@@ -72,7 +72,11 @@ TEST_F(Comparing, WhatIsKnownIsAnsweredAtOnceUntilAFileChanges) {
     }
   };
   const nlohmann::json pair{{"expert", "press.ctpm"}, {"trainee", "press.ctpm"}};
+  nlohmann::json only_known = pair;
+  only_known["only_known"] = true;
+  EXPECT_EQ(compared(only_known), std::pair(nlohmann::json(), false)) << "nobody has compared them";
   const auto first = compared(pair), again = compared(pair);
+  EXPECT_EQ(compared(only_known), std::pair(first.first, false));
   EXPECT_TRUE(first.second);
   EXPECT_FALSE(again.second);
   EXPECT_EQ(again.first, first.first);
@@ -87,6 +91,7 @@ TEST_F(Comparing, WhatIsKnownIsAnsweredAtOnceUntilAFileChanges) {
   EXPECT_TRUE(compared(pair).second);
   EXPECT_FALSE(compared(pair).second);
   fs::last_write_time(file("press.ctpm"), fs::last_write_time(file("press.ctpm")) + std::chrono::seconds(1));
+  EXPECT_TRUE(compared(only_known).first.is_null());
   EXPECT_TRUE(compared(pair).second);
 }
 
