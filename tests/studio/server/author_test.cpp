@@ -276,7 +276,7 @@ TEST_F(AuthorTest, AFitIsThatOfTheCommandAndKeepsTheRestOfTheText) {
   asked["organ"] = "liver";
   const auto refused = client.call("scene.fit", asked);
   ASSERT_TRUE(refused.contains("errors")) << refused;
-  EXPECT_EQ(refused["errors"][0]["where"], "kidney.json");
+  EXPECT_EQ(refused["errors"][0]["where"], "organ");
   EXPECT_EQ(refused["errors"][0]["hint"], "it has: kidney");
 }
 
