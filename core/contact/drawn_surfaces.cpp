@@ -43,10 +43,10 @@ DrawnSurfaces::DrawnSurfaces(const Model& model)
 
 void DrawnSurfaces::place(std::size_t organ, const Surface& surface, const State& state, std::vector<Vec3>& vertex) {
   surface::deform_surface(surface, state.position, model_.organs[organ].first, vertex);
-  if (!is_whole(surface, model_.surfaces[organ]))
-    surface::spread_stretch(surface, model_.organs[organ].spacing, vertex);
-  put_between_organs(organ, surface, state, vertex);
-  for (std::size_t hand = 0; hand < kMostHands; ++hand) put_on_ball(hand, organ, surface, state, vertex);
+  const bool is_cut = !is_whole(surface, model_.surfaces[organ]);
+  if (is_cut) surface::spread_stretch(surface, model_.organs[organ].spacing, vertex);
+  put_between_organs(organ, surface, is_cut, state, vertex);
+  for (std::size_t hand = 0; hand < kMostHands; ++hand) put_on_ball(hand, organ, surface, is_cut, state, vertex);
   for (const surface::ObstacleShape& obstacle : obstacles_)
     for (Vec3& v : vertex)
       if (obstacle.meets(Box(v)))
@@ -54,12 +54,12 @@ void DrawnSurfaces::place(std::size_t organ, const Surface& surface, const State
 }
 
 /// Moves the vertices that other tissue dents.
-void DrawnSurfaces::put_between_organs(std::size_t organ, const Surface& surface, const State& state,
+void DrawnSurfaces::put_between_organs(std::size_t organ, const Surface& surface, bool is_cut, const State& state,
                                        std::vector<Vec3>& vertex) {
   if (overlaps_.empty()) return;
   const Surface& own = model_.surfaces[organ];
   std::vector<std::int32_t> own_vertex;
-  if (!is_whole(surface, own)) own_vertex = find_own_vertices(surface, own);
+  if (is_cut) own_vertex = find_own_vertices(surface, own);
   for (surface::Body& body : bodies_) body.surface.begin(state.position);
   overlaps_.begin(state, model_.tick);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -77,8 +77,8 @@ void DrawnSurfaces::put_between_organs(std::size_t organ, const Surface& surface
 }
 
 /// Moves the vertices that the ball in a hand dents onto the ball.
-void DrawnSurfaces::put_on_ball(std::size_t hand, std::size_t organ, const Surface& surface, const State& state,
-                                std::vector<Vec3>& vertex) const {
+void DrawnSurfaces::put_on_ball(std::size_t hand, std::size_t organ, const Surface& surface, bool is_cut,
+                                const State& state, std::vector<Vec3>& vertex) const {
   const Hand& inputs = state.last_inputs.hand(hand);
   if (state.touched.empty() || inputs.tool < 0) return;
   const Tool& tool = model_.tools[std::size_t(inputs.tool)];
@@ -92,7 +92,7 @@ void DrawnSurfaces::put_on_ball(std::size_t hand, std::size_t organ, const Surfa
   };
   // A cut surface has vertices of its own, of which the ball dents those in it.
   std::vector<char> is_touched(vertex.size(), 0);
-  if (is_whole(surface, model_.surfaces[organ])) {
+  if (!is_cut) {
     for (const std::int32_t point : state.touched)
       if (is_of_organ(point)) is_touched[std::size_t(point - first)] = 1;
   } else if (std::any_of(state.touched.begin(), state.touched.end(), is_of_organ)) {

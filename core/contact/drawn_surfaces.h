@@ -29,8 +29,9 @@ class DrawnSurfaces {
   void place(std::size_t organ, const Surface& surface, const State& state, std::vector<Vec3>& vertex);
 
  private:
-  void put_between_organs(std::size_t organ, const Surface& surface, const State& state, std::vector<Vec3>& vertex);
-  void put_on_ball(std::size_t hand, std::size_t organ, const Surface& surface, const State& state,
+  void put_between_organs(std::size_t organ, const Surface& surface, bool is_cut, const State& state,
+                          std::vector<Vec3>& vertex);
+  void put_on_ball(std::size_t hand, std::size_t organ, const Surface& surface, bool is_cut, const State& state,
                    std::vector<Vec3>& vertex) const;
 
   const Model& model_;

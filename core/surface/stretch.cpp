@@ -22,12 +22,15 @@ constexpr double kSlack = 1e-3;
 
 using Triangle = std::array<std::int32_t, 3>;
 
+double longest_edge(Vec3 a, Vec3 b, Vec3 c) { return std::max({norm(b - a), norm(c - b), norm(a - c)}); }
+
+double longest_edge(const std::vector<Vec3>& vertex, const Triangle& t) {
+  return longest_edge(vertex[std::size_t(t[0])], vertex[std::size_t(t[1])], vertex[std::size_t(t[2])]);
+}
+
 /// The length that edges of a triangle may have [m].
 double most_length(const Surface& surface, const Triangle& t, double spacing) {
-  double longest = kShort * spacing;
-  for (std::size_t c = 0; c < 3; ++c)
-    longest = std::max(longest, norm(surface.vertex[std::size_t(t[(c + 1) % 3])] - surface.vertex[std::size_t(t[c])]));
-  return kMostStretch * longest;
+  return kMostStretch * std::max(longest_edge(surface.vertex, t), kShort * spacing);
 }
 
 /// Around all triangles that are too long; none: no triangle is.
@@ -35,8 +38,7 @@ std::optional<Box> find_stretched(const Surface& surface, double spacing, const 
   std::optional<Box> around;
   const double least = kMostStretch * kShort * spacing;
   for (const Triangle& t : surface.triangle) {
-    const Vec3 a = vertex[std::size_t(t[0])], b = vertex[std::size_t(t[1])], c = vertex[std::size_t(t[2])];
-    const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
+    const double longest = longest_edge(vertex, t);
     if (longest <= least || longest <= most_length(surface, t, spacing)) continue;
     for (const std::int32_t v : t) {
       const Vec3 rest = surface.vertex[std::size_t(v)];
@@ -107,10 +109,7 @@ class Spreading {
 }  // namespace
 
 double stretch_of(const Vec3 (&rest)[3], const Vec3 (&now)[3], double spacing) {
-  const auto longest = [](const Vec3(&p)[3]) {
-    return std::max({norm(p[1] - p[0]), norm(p[2] - p[1]), norm(p[0] - p[2])});
-  };
-  return longest(now) / std::max(longest(rest), kShort * spacing);
+  return longest_edge(now[0], now[1], now[2]) / std::max(longest_edge(rest[0], rest[1], rest[2]), kShort * spacing);
 }
 
 void spread_stretch(const Surface& surface, double spacing, std::vector<Vec3>& vertex) {

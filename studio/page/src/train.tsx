@@ -223,18 +223,20 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
             <Section title="Expert">
               <ExpertChoice listing={listing.sessions.filter(({ path }) => path !== output)} scenes={scenes} sceneKey={sceneKey} expert={expert} onExpert={setChosenExpert} use="shown as a ghost" />
               {trainer.isExpertOfOtherScene && <p class="warning" role="alert">{expert} is of another scene than this one: its ghost is not shown, and it cannot be compared with.</p>}
-              {expert && !trainer.isExpertOfOtherScene && <p class="hint">The pale blue tool is the expert's: yours should go where it goes.</p>}
               {expert && !trainer.isExpertOfOtherScene && (
-                <label class="field">
-                  <span>the ghost is</span>
-                  <select value={trainer.ghostAhead} onChange={(e) => {
-                    trainer.ghostAhead = Number(e.currentTarget.value);
-                    redraw();
-                  }}>
-                    <option value={kGhostAhead}>a little ahead</option>
-                    <option value={0}>where you are on its path</option>
-                  </select>
-                </label>
+                <>
+                  <p class="hint">The pale blue tool is the expert's: yours should go where it goes.</p>
+                  <label class="field">
+                    <span>the ghost is</span>
+                    <select value={trainer.ghostAhead} onChange={(e) => {
+                      trainer.ghostAhead = Number(e.currentTarget.value);
+                      redraw();
+                    }}>
+                      <option value={kGhostAhead}>a little ahead</option>
+                      <option value={0}>where you are on its path</option>
+                    </select>
+                  </label>
+                </>
               )}
               {trainer.ghostAway !== null && <Readings rows={[["away from your tool", millimetres(trainer.ghostAway)]]} />}
             </Section>
