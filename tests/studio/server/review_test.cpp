@@ -176,10 +176,18 @@ TEST_F(Reviewing, AGlimpseIsAtTheRecordedPoseAndTheReplayFollows) {
   }
   ASSERT_EQ(glimpse.size(), replayed.size());
   EXPECT_NE(glimpse.substr(kFrameHead), replayed.substr(kFrameHead));
-  // The moment was kept: asked again, it is replayed at once.
-  frame_of(client, 3000, 2);
-  client.send({{"show", {{"stage", 0}, {"tick", tick}, {"request", 3}}}});
-  EXPECT_FALSE(SocketClient::is_glimpse(client.any_frame()));
+  // The moment was kept: asked again, it is replayed at once. Of a moment that is not kept a glimpse always comes first;
+  // of a kept one it comes only where other programs hold up its picture, so that one of several is enough.
+  bool was_kept = false;
+  for (std::uint32_t request = 2; request < 40 && !was_kept; request += 2) {
+    frame_of(client, 3000, request);
+    client.send({{"show", {{"stage", 0}, {"tick", tick}, {"request", request + 1}}}});
+    std::string frame = client.any_frame();
+    was_kept = !SocketClient::is_glimpse(frame);
+    if (!was_kept) frame = client.frame();
+    EXPECT_EQ(value_at<std::uint32_t>(frame, 16), request + 1);
+  }
+  EXPECT_TRUE(was_kept);
 }
 
 TEST_F(Reviewing, APageThatDoesNotReadHoldsUpNobodyAndIsToldWhatItMissed) {
