@@ -14,6 +14,7 @@ namespace {
 constexpr double kHeight = 60e-3, kSpeed = 20e-3, kWait = 1.0;
 constexpr double kLead = 12e-3, kHalfWay = 18e-3;  // the force is read over 36 mm, after a lead
 constexpr double kLeastForce = 1e-6;               // [N]
+constexpr double kAcross = std::numbers::pi / 6;   // to the lattice
 
 /// Presses, waits and draws; fills the row's series with what is felt on the last 36 mm of the way.
 void draw_ball(const Body& body, std::int32_t tool, DragResult::Row& row) {
@@ -78,7 +79,7 @@ Result<DragResult> measure_drag(std::span<const double> radii, bool is_quick) {
     std::vector<std::int32_t> tools;
     for (std::size_t b = is_quick ? 1 : 0; b < (is_quick ? 2 : balls.size()); ++b)
       for (const double depth : {2e-3, 6e-3})
-        for (const double angle : {0.0, std::numbers::pi / 6}) {
+        for (const double angle : is_quick ? std::vector{kAcross} : std::vector{0.0, kAcross}) {
           rows.push_back({.radius = radius,
                           .ball = balls[b],
                           .depth = depth,

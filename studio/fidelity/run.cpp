@@ -86,7 +86,7 @@ std::vector<Recipe> recipes() {
       {{"strokes", "Strokes through the shipped organs", false},
        [](const FidelityOptions& o) { return told(measure_strokes(o.shipped, o.is_quick)); }},
       {{"pieces", "Pieces that fall", false}, [](const FidelityOptions&) { return told(measure_pieces(4e-3)); }},
-      {{"grip", "Grip", false}, [](const FidelityOptions& o) { return told(measure_grip(o.is_quick ? 6e-3 : 4e-3)); }},
+      {{"grip", "Grip", false}, [](const FidelityOptions& o) { return told(measure_grip(o.is_quick ? 8e-3 : 4e-3)); }},
       {{"recovery", "Recovery from abuse", false},
        [](const FidelityOptions& o) {
          return told(measure_recovery(o.is_quick ? Radii{4e-3} : Radii{4e-3, 2e-3}));

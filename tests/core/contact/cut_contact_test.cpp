@@ -14,6 +14,7 @@
 #include "core/cutting/blade_geometry.h"
 #include "core/stepping/step.h"
 #include "tests/core/cut_blocks.h"
+#include "tests/core/integrators.h"
 
 namespace ctpm {
 namespace {
@@ -187,7 +188,7 @@ Dropped drop(const Model& model, State state, double ground, int ticks) {
   return dropped;
 }
 
-TEST(CutContact, ACapRestsOnTheGroundWithItsCutFace) {
+TEST(CutContact, SlowACapRestsOnTheGroundWithItsCutFace) {
   Model model = testing::block_to_cut(6, 6, 4, 0.01);
   const double ground = -0.02;
   model.gravity = {0, 0, -9.81};
@@ -353,8 +354,7 @@ TEST_P(CutContactUnder, ATickTellsWhenItCutsAndWhenItWaitsForACut) {
   expect_same(state, other);
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, CutContactUnder,
-                         ::testing::Values(Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2));
+CTPM_UNDER_EACH_INTEGRATOR(CutContactUnder);
 
 TEST(CutContact, ABallOnAClosedCutDoesNotWedgeItOpen) {
   const Model model = testing::block_to_cut(8, 8, 4, 0.01);

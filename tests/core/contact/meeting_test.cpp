@@ -11,6 +11,7 @@
 #include "core/surface/obstacle_shape.h"
 #include "core/surface/rigid_motion.h"
 #include "core/surface/surface.h"
+#include "tests/core/integrators.h"
 #include "tests/core/skinned_block.h"
 
 namespace ctpm {
@@ -302,13 +303,7 @@ TEST_P(Meeting, ThreadsAndInstructionSetsChangeNoBit) {
   EXPECT_EQ(one.grip, two.grip);
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, Meeting,
-                         ::testing::Values(Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2),
-                         [](const auto& of) {
-                           return of.param == Integrator::leapfrog         ? "Leapfrog"
-                                  : of.param == Integrator::backward_euler ? "BackwardEuler"
-                                                                           : "Sdirk2";
-                         });
+CTPM_UNDER_EACH_INTEGRATOR(Meeting);
 
 TEST(RigidMotion, IsFoundUnderDeformation) {
   Model model;

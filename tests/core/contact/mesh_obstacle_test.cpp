@@ -9,6 +9,7 @@
 #include "core/stepping/step.h"
 #include "core/surface/obstacle_shape.h"
 #include "core/surface/rigid_mesh.h"
+#include "tests/core/integrators.h"
 #include "tests/core/skinned_block.h"
 
 namespace ctpm {
@@ -159,8 +160,7 @@ TEST_P(OnMesh, ThreadsChangeNoBit) {
   EXPECT_EQ(one.position, two.position);
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, OnMesh,
-                         ::testing::Values(Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2));
+CTPM_UNDER_EACH_INTEGRATOR(OnMesh);
 
 }  // namespace
 }  // namespace ctpm

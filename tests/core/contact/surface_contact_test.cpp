@@ -10,6 +10,7 @@
 #include "core/contact/drawn_surfaces.h"
 #include "core/stepping/step.h"
 #include "core/surface/surface.h"
+#include "tests/core/integrators.h"
 #include "tests/core/skinned_block.h"
 
 namespace ctpm {
@@ -267,8 +268,7 @@ TEST_P(SurfaceContact, ReachesThroughNoThinFlapToItsFarSide) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Under, SurfaceContact,
-                         ::testing::Values(Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2));
+CTPM_UNDER_EACH_INTEGRATOR(SurfaceContact);
 
 TEST(Foundation, IsAThreeParameterModel) {
   OrganRange organ;

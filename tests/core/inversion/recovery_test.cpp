@@ -7,6 +7,7 @@
 #include "core/elements/elements.h"
 #include "core/inversion/resistance.h"
 #include "core/stepping/step.h"
+#include "tests/core/integrators.h"
 #include "tests/core/inversion/cells.h"
 
 namespace ctpm {
@@ -155,13 +156,7 @@ TEST_P(ResistanceUnder, ComesBackFromFiftyTimesItsWeight) {
   EXPECT_LT(farthest_from(scene.rest, scene.state), 0.5e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, ResistanceUnder,
-                         ::testing::Values(Integrator::leapfrog, Integrator::backward_euler, Integrator::sdirk2),
-                         [](const auto& of) {
-                           std::string name = stepping::name_of(of.param);
-                           std::erase(name, '-');
-                           return name;
-                         });
+CTPM_UNDER_EACH_INTEGRATOR(ResistanceUnder);
 
 // The witness that the tests above need the resistance.
 TEST(WithoutResistance, APressLeavesTissueInsideOut) {

@@ -83,7 +83,7 @@ TEST(ScriptChoice, ABladeGoesLessDeepIntoASmallSoftOrgan) {
   EXPECT_LT(chosen.dragged, 0.08 * 0.050);
 }
 
-TEST(ScriptChoice, SaysSoWhereABladeDragsAtAnyDepth) {
+TEST(ScriptChoice, SlowSaysSoWhereABladeDragsAtAnyDepth) {
   Lump lump("soft-tissue", 0.03);
   EXPECT_TRUE(lump.was_found("blade_drags"));
 }

@@ -245,7 +245,7 @@ TEST_F(MoreExports, ItIsSaidThatSessionsBesideEachOtherAreOfTwoScenes) {
 TEST_F(MoreExports, APartIsShownThoughTheSessionIsDamagedElsewhere) {
   const std::string whole = slurp(kClumsy);
   int refused = 0;
-  for (double place = 0.3; place < 0.95; place += 0.02) {  // keyframes take most of the file
+  for (double place = 0.3; place < 0.95 && refused < 2; place += 0.02) {  // keyframes take most of the file
     std::string bytes = whole;
     const auto at = std::size_t(place * double(bytes.size()));
     for (std::size_t i = at; i < at + 64; ++i) bytes[i] = char(bytes[i] ^ 0x55);
