@@ -393,6 +393,9 @@ void describe_fields(V& v, SceneSpec& scene) {
   v.constant(required("format", "Says that this is a scene."), scene_format_name);
   v.constant(required("version", "Version of the format."), scene_format_version);
   v.text(required("name", "Name of the scene."), scene.name);
+  v.text(Key{"task", "What a trainee is to do here; it stands beside the picture where the scene is trained.", false,
+             "none is told"},
+         scene.task);
   v.point(Key{"gravity_m_per_s2", "Acceleration of free fall; all zero: no gravity."}, scene.gravity,
           units::metre_per_second2, within(-1000, 1000));
   v.number(Key{"tick_s", "Length of a tick."}, scene.tick, units::second, within(1e-6, 0.1));

@@ -240,6 +240,7 @@ struct ObstacleSpec {
 
 struct SceneSpec {
   std::string name;
+  std::string task;           ///< for trainees; empty: none is told
   Vec3 gravity{0, 0, -9.81};  ///< [m/s^2]
   double tick = 1e-3;         ///< [s]
   double settle = 1.0;        ///< longest time for the scene to come to rest before the first tick [s]

@@ -69,7 +69,7 @@ void write_findings(output::JsonWriter& json, const std::vector<importers::Findi
 std::string view_json(const scenes::SceneSpec& scene, const Model& model) {
   const render::SceneView view = views::view_of(scene, model);
   output::JsonWriter json;
-  json.begin_object().member("name", scene.name).key("organs").begin_list();
+  json.begin_object().member("name", scene.name).member("task", scene.task).key("organs").begin_list();
   for (std::size_t i = 0; i < model.organs.size(); ++i) {
     const OrganRange& organ = model.organs[i];
     json.begin_object().member("name", organ.name).member("spheres", std::int64_t(organ.count));

@@ -89,6 +89,7 @@ class Scrubber {
     if (!scene) return clear(text, "the scene's text, which this version cannot read (no pictures are drawn of it)");
     scenes::SceneSpec spec = scene->spec;
     spec.name = named("scene", spec.name);
+    clear(spec.task, "the scene's task");
     for (scenes::OrganSpec& organ : spec.organs) {
       organ.name = named("organ", organ.name);
       scrub_path(organ.mesh);

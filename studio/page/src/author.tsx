@@ -250,6 +250,11 @@ export function Author({ connection, listing, onTry, onChanged }: {
   );
 }
 
+/** What a scene tells trainees is one line. */
+function taskOf(typed: string): string | undefined {
+  return typed.trim() ? typed.replace(/[\u0000-\u001f\u007f]+/g, " ") : undefined;
+}
+
 /** What the picture shows, and what dragging in it does. */
 function ViewBar({ desk, item, modes, mode, onMode, onVersion }: { desk: Desk; item: Item | null; modes: GizmoMode[]; mode: GizmoMode; onMode: (mode: GizmoMode) => void; onVersion: () => void }) {
   const { scene, gizmos } = desk;
@@ -352,9 +357,15 @@ function CopyForm({ doc, onClose, onCopied }: { doc: SceneDocument; onClose: () 
 
 /** What the program says of the scene. */
 function About({ scene }: { scene: AuthorScene }) {
-  const { shown, doc } = scene;
+  const { shown, doc } = scene, task = findJson(doc!.lastValue, ["task"]);
   return (
     <>
+      <Section title="Task">
+        <label class="field">
+          <span>what a trainee is to do here</span>
+          <textarea rows={3} value={typeof task === "string" ? task : ""} onInput={(e) => doc!.preview([[["task"], taskOf(e.currentTarget.value)]])} onChange={() => doc!.commit()} />
+        </label>
+      </Section>
       {shown && (
         <Section title={shown.view.name}>
           <div class="numbers" aria-busy={scene.isRefilling}>

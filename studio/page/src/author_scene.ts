@@ -48,7 +48,7 @@ interface Checked {
 
 /** What the simulation depends on: a change of anything else does not load the scene again. */
 function simulatedPart(value: Json | undefined): string {
-  const { cameras, probes, name, tools, ...rest } = (value ?? {}) as { [key: string]: Json };
+  const { cameras, probes, name, task, tools, ...rest } = (value ?? {}) as { [key: string]: Json };
   const shapes = listOf({ tools }, "tools").map(({ at_mm, pointing, facing, ...shape }) => shape);
   return JSON.stringify([rest, shapes]);
 }
@@ -60,7 +60,12 @@ function middleOf(centres: Float32Array): three.Vector3 {
 
 /** Scenes that were open, those that were removed in this page by where they are. */
 const documents = new Map<string, SceneDocument>();
-let lastOpen = "";
+const kOpen = "ctpm.scene"; // what this tab shows, also after the page was loaded again
+let lastOpen = sessionStorage.getItem(kOpen) ?? "";
+function remember(path: string): void {
+  lastOpen = path;
+  sessionStorage.setItem(kOpen, path);
+}
 
 /** A scene's history and its draft go where its file goes. */
 function moveDocument(from: string, to: string): void {
@@ -106,17 +111,18 @@ export class AuthorScene {
     });
   }
 
-  /** The scene that was open when the author left the room; empty: none. */
+  /** The scene that was open when the author left the room, or loaded the page again; empty: none. */
   static get lastOpen(): string {
     return lastOpen;
   }
 
   /** Opens a scene, with the history that it had if it was open before. */
   async open(path: string): Promise<void> {
+    if (this.isLoading && !this.doc && lastOpen === path) return; // it is on its way
     this.doc?.commit();
     const known = documents.get(path);
     this.close();
-    lastOpen = path;
+    remember(path);
     this.isLoading = true;
     this.onChange();
     try {
@@ -148,7 +154,7 @@ export class AuthorScene {
     for (const timer of Object.values(this.timers)) clearTimeout(timer);
     this.endWork();
     if (lastOpen) this.letGo();
-    lastOpen = "";
+    remember("");
     this.doc = null, this.shown = null, this.error = null, this.tickTime = null, this.checked = null, this.shownPart = "";
     this.viewer.set(kAuthorStage, null);
     this.stage = null;
@@ -162,7 +168,7 @@ export class AuthorScene {
     doc.path = to;
     this.hold();
     if (this.doc !== doc) return;
-    lastOpen = to, this.shownPart = ""; // the program shows it by its new name
+    remember(to), this.shownPart = ""; // the program shows it by its new name
     this.endWork();
     this.changed();
   }

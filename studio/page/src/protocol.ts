@@ -96,14 +96,13 @@ export interface CameraView {
 
 export interface SceneView {
   name: string;
+  task: string; // for trainees; empty: none is told
   organs: OrganView[];
   tools: ToolView[];
   hands: number; // 1 or 2
   cameras: CameraView[];
   damage_force_n: number;
-  least: Vector;
-  most: Vector;
-  up: Vector;
+  least: Vector; most: Vector; up: Vector;
 }
 
 export interface OpenedSession {

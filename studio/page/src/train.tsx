@@ -14,7 +14,7 @@ import type { CameraView, EndedTraining, Listing, Motion, SceneOfSession } from 
 import { ForceSound } from "./sound";
 import { command, millimetres } from "./text";
 import { TrainBar } from "./train_bar";
-import { Now } from "./train_now";
+import { Now, Task } from "./train_now";
 import { kGhostAhead, Trainer } from "./trainer";
 import { Viewer } from "./viewer";
 
@@ -217,6 +217,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
             {phase === "loading" && <button type="button" onClick={() => loading.current?.abort()}>Cancel</button>}
           </Section>
         )}
+        {(phase === "running" || phase === "ended") && <Task task={view?.task ?? ""} />}
         {phase === "running" && trainer && (
           <>
             <Now trainer={trainer} note={note} />

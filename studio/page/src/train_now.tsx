@@ -40,3 +40,8 @@ export function Now({ trainer, note }: { trainer: Trainer; note: string }) {
     </Section>
   );
 }
+
+/** What the scene's author wants to see done. */
+export function Task({ task }: { task: string }) {
+  return task ? <Section title="Task"><p class="task">{task}</p></Section> : null;
+}

@@ -32,9 +32,9 @@ using session_file::Bytes;
 
 /// Each place of a session has a word of its own, so that a failure tells which one was forgotten.
 const std::vector<std::string> kInContent{
-    "SecretScene", "SecretZone",   "SecretComment", "SecretOrgan", "SecretTool",   "SecretCamera",
-    "SecretProbe", "SecretTable",  "SecretLook",    "SecretUser",  "/home/secret", "SecretBuild",
-    "SecretNote",  "SecretReason", "SecretCount",   "SecretOld",   "SecretSigner", "SecretPart"};
+    "SecretScene",  "SecretTask",  "SecretZone", "SecretComment", "SecretOrgan",  "SecretTool",  "SecretCamera",
+    "SecretProbe",  "SecretTable", "SecretLook", "SecretUser",    "/home/secret", "SecretBuild", "SecretNote",
+    "SecretReason", "SecretCount", "SecretOld",  "SecretSigner",  "SecretPart"};
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -63,7 +63,8 @@ class Anonymise : public ::testing::Test {
  protected:
   Anonymise() {
     if (!can_sign()) return;
-    std::ofstream(path("block.json")) << R"({"format": "ctpm-scene", "version": 1, "name": "SecretScene",
+    std::ofstream(path("block.json"))
+        << R"({"format": "ctpm-scene", "version": 1, "name": "SecretScene", "task": "SecretTask",
       // SecretComment drew this
       "settle_s": 0, "organs": [{"name": "SecretOrgan", "rig": {"block": [4, 3, 3]}, "material": {"preset": "liver"},
       "anchors": [{"lowest_mm": 1}]}],
@@ -155,7 +156,7 @@ TEST_F(Anonymise, NoPlaceOfASessionKeepsAWordAndItStillVerifies) {
     EXPECT_FALSE(holds(lower, "secret")) << lower.substr(lower.find("secret"), 40);
   }
   for (const char* said : {"texts of notes", "the signature", "metadata 'user'", "comments of the scene",
-                           "stays: the shape of the organs"})
+                           "the scene's task", "stays: the shape of the organs"})
     EXPECT_TRUE(holds(done.out, said)) << said << " is not in " << done.out;
 
   const ProgramOutcome verified = ctpm({"verify", "b.ctpm"});

@@ -242,9 +242,9 @@ step(`${10 * kRounds} steps of all kinds are undone and done again, each as it w
   };
   for (let i = count - 1; i >= half; --i) await undo(i);
   // The page is loaded anew in the middle of them: what leads on is there, and so is what led here.
-  await page.reload();
-  await openScene();
+  await page.reload(); // which shows the scene again
   await page.waitForSelector(".earlier-visit");
+  await settled();
   assert.equal(await text(), steps[half]);
   for (let i = half + 1; i <= count; ++i) {
     await page.keyboard.press("Control+Shift+z");
@@ -455,6 +455,7 @@ step("a draft is there after its tab was closed, until the file says the same", 
   assert.equal(onDisk(), saved);
   // The same while the scene is not open: its mark goes when its author comes back to the window.
   await page.keyboard.press("Control+Shift+z");
+  await page.evaluate(() => sessionStorage.clear()); // as another tab begins
   await page.reload();
   await page.waitForFunction(() => document.querySelector(".scenes li button[aria-describedby]"));
   writeFileSync(join(folder, kScene), others);

@@ -17,6 +17,7 @@ before(async () => {
   // A scene whose names are HTML.
   const scene = JSON.parse(readFileSync(join(folder, "kidney.json"), "utf8"));
   scene.name = scene.organs[0].name = "<img src=x onerror=alert(1)>";
+  scene.task = "Cut <b onclick=alert(3)>here</b>.";
   scene.tools[0].name = "<b onclick=alert(2)>ball</b>";
   scene.cameras[0] = { name: "away", eye_mm: [0, -300, 200], target_mm: [300, -300, 200] }; // sees nothing
   writeFileSync(join(folder, "html.json"), JSON.stringify(scene));
@@ -49,6 +50,7 @@ step("names in a scene are text", async () => {
   await begin(page, "html");
   assert.equal(await page.locator(".transport button:has-text('<b onclick=alert(2)>ball</b>')").count(), 1);
   // The organ is in the picture, although the scene's first camera looks elsewhere.
+  assert.equal(await page.locator("aside .task").innerText(), "Cut <b onclick=alert(3)>here</b>.");
   const { width, height } = await page.locator(".view canvas").boundingBox();
   const red = await until(async () => (await pixels(kTissue)) / (width * height), (share) => share > 0.03);
   assert.ok(red > 0.03, `${red} of the picture is tissue`);
@@ -70,6 +72,14 @@ step("names in a scene are text", async () => {
   await page.waitForSelector(".handle:has(span:text-is('<b onclick=alert(2)>ball</b>'))", { state: "attached" }); // out of the picture
   await page.click(".objects button:has-text('<img src=x')");
   assert.equal(await page.locator(".objects button:has-text('<img src=x onerror=alert(1)>')").count(), 1);
+  await page.click("[role=tab]:has-text('scene')");
+  const task = page.getByLabel("what a trainee is to do here");
+  assert.equal(await task.inputValue(), "Cut <b onclick=alert(3)>here</b>.");
+  await task.pressSequentially(" Then\nstop."); // a scene's texts are of one line
+  await page.keyboard.press("Tab");
+  await page.waitForFunction(() => document.querySelector(".verdict").innerText.startsWith("good"));
+  assert.equal(await task.inputValue(), "Cut <b onclick=alert(3)>here</b>. Then stop.");
+  await page.keyboard.press("Control+z");
   assert.equal(await page.locator("main img, main b[onclick]").count(), 0);
   await page.click("header nav button:has-text('Train')");
   await page.click("button:has-text('Choose a scene')");
