@@ -135,22 +135,29 @@ void ExpertMarker::bind(std::span<const DrawnOrgan> organs) {
     std::vector<Vec3> place;  // two of each piece
     std::vector<double> nearest(2 * line.size(), kNear);
     Cells cells;
+    std::optional<Box> all;  // most triangles are far from the line
     for (const ExpertCut::Piece& piece : line)
       for (const Vec3 end : {piece.from, piece.to}) {
         place.push_back(end + kAside * piece.side);
-        if (std::size_t(piece.organ) == organ) cells.add(Box(place.back()), place.size() - 1);
+        if (std::size_t(piece.organ) != organ) continue;
+        const Box around = Box(place.back()).grown(kNear);
+        cells.add(around, place.size() - 1);
+        if (!all) all = around;
+        all->add(around.low), all->add(around.high);
       }
     const Surface& surface = *organs[organ].surface;
-    for (std::size_t t = 0; t < organs[organ].outer_triangles; ++t) {
+    for (std::size_t t = 0; all && t < organs[organ].outer_triangles; ++t) {
       const Corners c = corners_of(surface, t);
-      cells.near(Box(c[0], c[1], c[2]).grown(kNear), [&](std::size_t i) {
+      const Box box(c[0], c[1], c[2]);
+      if (!all->meets(box)) continue;
+      cells.near(box, [&](std::size_t i) {
+        if (!box.meets(Box(place[i]).grown(nearest[i]))) return;
         const Vec3 p = cutting::nearest_in_triangle(place[i], c[0], c[1], c[2]);
         const double distance = norm(p - place[i]);
-        if (distance >= nearest[i]) return;
-        nearest[i] = distance;
         const Vec3 normal = cross(c[1] - c[0], c[2] - c[0]);
         const double square = dot(normal, normal);
-        if (!(square > 0)) return;
+        if (distance >= nearest[i] || !(square > 0)) return;
+        nearest[i] = distance;
         const double b = dot(normal, cross(p - c[0], c[2] - c[0])) / square,
                      third = dot(normal, cross(c[1] - c[0], p - c[0])) / square;
         ends_[i / 2][i % 2] = {std::int32_t(t), {1 - b - third, b, third}};
