@@ -33,11 +33,15 @@ export class ExpertLine {
   constructor() {
     this.line.frustumCulled = this.strays.frustumCulled = false;
     this.strays.renderOrder = 2;
-    // Three.js takes the size of the canvas, of which a picture may be half, and coarser or finer.
+    // Three.js takes the size of the canvas, of which a picture may be half, and coarser or finer than that.
     this.line.onBeforeRender = (renderer) => {
       const seen = renderer.getRenderTarget()?.viewport ?? renderer.getViewport(new three.Vector4());
       const height = renderer.getSize(new three.Vector2()).y;
       this.line.material.resolution.set((seen.z / seen.w) * height, height);
+    };
+    this.strays.onBeforeRender = (renderer) => {
+      const target = renderer.getRenderTarget(), height = renderer.getSize(new three.Vector2()).y;
+      this.strays.material.size = kDot * (target ? target.viewport.w / height / renderer.getPixelRatio() : 1);
     };
     this.group.add(this.line, this.strays);
   }
