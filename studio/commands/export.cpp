@@ -18,6 +18,7 @@
 #include "studio/compare/session_track.h"
 #include "studio/exchange/export_shapes.h"
 #include "studio/film/contact_sheet.h"
+#include "studio/film/expert_cut_of.h"
 #include "studio/film/export_video.h"
 #include "studio/film/stills.h"
 #include "studio/output/files.h"
@@ -32,6 +33,7 @@ struct ExportArguments {
   std::vector<std::string> files;
   std::string beside, ghost, output, align, size = "1280x720";
   std::optional<double> at_s;
+  bool no_expert_line = false;
   film::ExportOptions options;
 };
 
@@ -135,6 +137,14 @@ Result<film::ExportOutcome> export_one(ExportArguments arguments, std::vector<re
   }
   const Result<Done> same = sessions.size() == 2 ? compare::check_same_scene(*sessions[0], *sessions[1]) : Done{};
   if (!same && arguments.ghost.empty()) print_warnings(same.errors());
+  if (same && sessions.size() == 2 && !arguments.no_expert_line) {
+    Result<std::shared_ptr<const render::ExpertCut>> cut =
+        film::expert_cut_of(*(arguments.ghost.empty() ? sessions[0] : sessions[1]));
+    if (cut)
+      arguments.options.expert = std::move(*cut);
+    else
+      print_warnings(cut.errors());
+  }
   if (!arguments.ghost.empty()) {
     if (!same) return same.errors();
     arguments.options.ghost = sessions.back();
@@ -281,6 +291,9 @@ Command add_export(CLI::App& program) {
       "--align", arguments->align,
       "What brings both together: path of the tool, first contact, first cut, clock, or the seconds that the "
       "second one's clock shows more; the half that is ahead is slowed down. If not given the path, else the contact");
+  app->add_flag("--no-expert-line", arguments->no_expert_line,
+                "Of a pair, without the line of the expert's cut on the trainee's organ and the marks of what is cut "
+                "elsewhere");
   app->add_option("--size", arguments->size, "Width x height in pixels")->capture_default_str();
   app->add_option("--fps", options.fps, "Frames per second")->capture_default_str();
   app->add_option("--speed", options.speed, "Times real speed")->capture_default_str();

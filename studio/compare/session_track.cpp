@@ -11,6 +11,7 @@
 #include "recordings/state_hash.h"
 #include "scenes/scene_file.h"
 #include "studio/session/anonymise.h"
+#include "studio/session/cut_at_end.h"
 #include "studio/session/probes.h"
 
 namespace ctpm::compare {
@@ -173,34 +174,18 @@ Result<Done> replay_cuts(recordings::SessionReader& session, SessionTrack& track
   return Done{};
 }
 
-/// The tick after which nothing cuts: no hand holds a blade any more, and nothing is severed.
-std::int64_t end_of_cuts(recordings::SessionReader& session, const SessionTrack& track) {
-  const Model& model = session.start().model;
-  std::int64_t end = session.tick_count();
-  const auto cuts = [&](std::size_t tick) { return track.severed[tick] != 0 || model.is_scalpel(track.tool[tick]); };
-  // Of a second hand the track does not know what it held.
-  while (model.hands == 1 && end > 0 && !cuts(std::size_t(end - 1))) --end;
-  return end;
-}
-
 /// What is severed in the end, and the size of the cuts. In which tick something was severed is not known.
 Result<Done> replay_end(recordings::SessionReader& session, SessionTrack& track) {
   track.severed_at.assign(ElementPlaces(session.start().model).count, -1);
   if (track.cuts.empty()) return Done{};
-  Result<recordings::Keyframe> last = session.keyframe_at_or_before(session.tick_count());
-  if (!last) return last.errors();
-  State state = std::move(last->state);
-  if (const std::int64_t end = end_of_cuts(session, track); last->tick < end) {
-    Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(session);
-    if (!cursor) return cursor.errors();
-    if (const Result<Done> ended = cursor->seek(end); !ended) return ended.errors();
-    state = cursor->state(), track.replays = cursor->same_so_far();
-  }
-  const std::vector<std::uint8_t> severed = severed_flags(state);
+  const Result<session::CutAtEnd> end = session::cut_at_end(session);
+  if (!end) return end.errors();
+  track.replays = end->is_same;
+  const std::vector<std::uint8_t> severed = severed_flags(end->state);
   for (std::size_t i = 0; i < severed.size(); ++i)
     if (severed[i]) track.severed_at[i] = std::int64_t(track.cuts.back().last) - 1;
   session::CutMeasures measures(session.start().model);
-  measures.measure(state), track.cut = measures.size();
+  measures.measure(end->state), track.cut = measures.size();
   return Done{};
 }
 

@@ -129,6 +129,10 @@ Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>
       append(errors, reel);
   }
   if (!errors.empty()) return errors;
+  if (reels.size() == 2) {
+    reels[0].role = "expert", reels[1].role = "trainee";
+    reels[0].look.draw.expert.reset();  // it made room for what stands in the other half
+  }
   if (options.ghost) {
     Result<Ghost> ghost = ghost_of(*options.ghost, ticks->back());
     if (!ghost) return ghost.errors();

@@ -3,12 +3,14 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/model/result.h"
 #include "recordings/session_reader.h"
 #include "studio/film/pipeline.h"
+#include "studio/render/expert_cut.h"
 #include "studio/render/picture_size.h"
 #include "studio/session/time_range.h"
 #include "studio/video/video_writer.h"
@@ -33,6 +35,8 @@ struct ExportOptions {
   bool strip = false;            ///< the whole session's force and moments on a line below the picture
   /// Whose tool and way are drawn into the picture of a single session of the same scene; `matched` belongs to both.
   recordings::SessionReader* ghost = nullptr;
+  /// Its line and what was cut elsewhere are drawn on the organ of the last session, which is of the expert's scene.
+  std::shared_ptr<const render::ExpertCut> expert = nullptr;
   bool overwrite = false;       ///< replaces an existing video or sidecar
   bool allow_diverged = false;  ///< continue if the replay differs from the recording
   std::function<void(std::int64_t done, std::int64_t total)> progress;

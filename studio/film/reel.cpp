@@ -90,6 +90,14 @@ bool may_warn(const Reel& reel, const render::OverlayData& data, bool is_pair) {
          std::ranges::any_of(reel.moments, [](const Moment& moment) { return moment.kind == Moment::Kind::damage; });
 }
 
+/// What the marks of an expert's cut mean.
+std::vector<render::MarkMeaning> meanings_of(const render::ExpertCut& expert, bool has_strays) {
+  std::vector<render::MarkMeaning> meanings;
+  if (!expert.line().empty()) meanings.push_back({render::kExpertColour, render::kExpertMeaning, true});
+  if (has_strays) meanings.push_back({render::kStrayColour, render::kStrayMeaning});
+  return meanings;
+}
+
 /// Moves a camera that nobody placed so that the panels of this film hide little.
 void make_room(Reel& reel, recordings::SessionReader& session, const render::PictureSize& size, bool is_pair) {
   render::OverlayData data = reel.film->overlay();
@@ -101,6 +109,10 @@ void make_room(Reel& reel, recordings::SessionReader& session, const render::Pic
     if (reel.caption.empty() && moment.text.size() > data.caption.size()) data.caption = moment.text;
   data.legend = render::legend_of(reel.film->model(), reel.look.draw);
   data.taken_right = reel.taken_right, data.has_insets = !reel.insets.empty();
+  if (reel.look.draw.expert) {
+    data.marks = meanings_of(*reel.look.draw.expert, true);
+    data.verdict = reel.film->verdict(), data.verdict_tone = render::VerdictTone::good;  // they stand below it
+  }
   if (may_warn(reel, data, is_pair)) data.worst = {2 * data.damage_force, 2 * data.damage_depth};
   std::vector<render::PixelBox> panels = reel.overlay->standing_panels(data);
   for (std::size_t i = 0; i < reel.insets.size(); ++i) panels.push_back(Inset::box(size, int(i)));
@@ -138,7 +150,7 @@ Result<State> telling_state(recordings::SessionReader& session, const session::T
 Result<Shot> Reel::shoot(std::int64_t frame) const {
   Result<Shot> shot = film->shoot(ticks.tick(frame));
   if (!shot) return shot;
-  shot->overlay.level = level;
+  shot->overlay.level = level, shot->overlay.role = role;
   shot->overlay.caption = caption.empty() ? words_at(moments, ticks.tick(frame), told) : caption;
   shot->overlay.stands = frame < ticks.begun    ? render::Stands::before_start
                          : frame >= ticks.ended ? render::Stands::after_end
@@ -165,6 +177,7 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
   const Result<views::Look> look = look_of(session, *reel.film, view, size, options, *all, first);
   if (!look) return look.errors();
   reel.look = *look;
+  reel.look.draw.expert = options.expert;
   if (options.strip) reel.strip_height = strip_height(size.height);
   const int height = size.height - reel.strip_height;
   const Result<std::vector<Inset::Kind>> insets = insets_of(options.inset);
@@ -230,6 +243,9 @@ render::Frame draw_shot(Reel& reel, Shot& shot, double top_force) {
   if (reel.ghost) render::draw_marks(picture, draw.camera, reel.ghost->way);
   shot.overlay.tools = reel.renderer->tool_points(shot.state, draw);
   shot.overlay.legend = render::legend_of(reel.film->model(), draw);
+  if (draw.expert)
+    shot.overlay.marks =
+        meanings_of(*draw.expert, !render::strays_of(reel.film->model(), *draw.expert, shot.state).empty());
   shot.overlay.least_top_force = std::max(shot.overlay.least_top_force, top_force);
   reel.overlay->draw(picture, shot.overlay);
   for (std::size_t i = 0; i < reel.insets.size(); ++i)

@@ -35,6 +35,7 @@ struct Reel {
   double speed = 1;         ///< of the film
   bool shows_pace = false;  ///< where it is not that of the clock
   render::OverlayLevel level = render::OverlayLevel::full;
+  std::string role;  ///< of a pair, whose it is: render::OverlayData::role
   std::optional<Ghost> ghost;
   std::vector<Inset> insets;
   int taken_right = 0;  ///< by them [pixels]

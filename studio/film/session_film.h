@@ -59,6 +59,7 @@ class SessionFilm {
   const session::TickRange& range() const { return range_; }
   std::int64_t first_different_tick() const { return first_different_; }  ///< -1: none
   bool is_same() const { return first_different_ < 0; }
+  std::string verdict() const;  ///< up to the last shot, in words
 
  private:
   SessionFilm(recordings::SessionReader& reader, scenes::SceneSpec scene, const session::TickRange& range,
@@ -74,7 +75,6 @@ class SessionFilm {
   void look_back(const std::vector<recordings::Event>& events, std::int64_t begin, std::int64_t end);
   bool holds_blade(const Hand& hand) const;
   Error differs() const;
-  std::string verdict() const;
 
   recordings::SessionReader& reader_;
   scenes::SceneSpec scene_;

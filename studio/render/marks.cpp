@@ -36,7 +36,8 @@ void draw_marks(Frame& frame, const Camera& camera, const std::vector<Mark>& mar
     }
     const cv::Scalar colour = colour_of(mark);
     for (std::size_t i = 0; i < seen.size(); ++i) {
-      if (mark.shape == Mark::Shape::dot) cv::circle(rgb, seen[i], stroke, colour, cv::FILLED, cv::LINE_AA);
+      if (mark.shape == Mark::Shape::dot)
+        cv::circle(rgb, seen[i], std::max(1, int(std::lround(mark.size * 2 * scale))), colour, cv::FILLED, cv::LINE_AA);
       if (mark.shape == Mark::Shape::ring) cv::circle(rgb, seen[i], 4 * stroke, colour, stroke, cv::LINE_AA);
       const bool is_end = i + 1 == seen.size();
       if (i == 0 || (mark.shape != Mark::Shape::line && mark.shape != Mark::Shape::arrow)) continue;

@@ -22,6 +22,7 @@ struct Mark {
   std::vector<Vec3> points;  ///< [m]
   Colour colour{1, 1, 1};
   std::string label;  ///< beside the last point; empty: none
+  double size = 1;    ///< of dots, times the usual one
 };
 
 /// Draws marks as `camera` sees them. Points behind it are left out.

@@ -104,6 +104,17 @@ void OrganPainter::add_shadows(GroundShadow& shadow, const Cutaway& cutaway) con
     shadow.add(cut_of(organ).surface(), organ.mesh.positions(), cut_of(organ).outer_triangle_count(), cutaway);
 }
 
+std::vector<DrawnOrgan> OrganPainter::drawn(std::uint64_t& version) const {
+  std::vector<DrawnOrgan> drawn;
+  version = 0;
+  for (const Organ& organ : organs_) {
+    const CutSurface& cut = cut_of(organ);
+    drawn.push_back({&cut.surface(), cut.outer_triangle_count(), &organ.mesh.positions()});
+    version += cut.changes();  // each of which only grows
+  }
+  return drawn;
+}
+
 std::vector<const Program*> OrganPainter::programs(const DrawOptions& options) const {
   if (options.view == View::both) return {&program(OrganPass::glassy, options)};
   std::vector<const Program*> used{&program(OrganPass::outside, options), &program(OrganPass::near_cut, options),

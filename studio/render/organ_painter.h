@@ -9,6 +9,7 @@
 #include "core/cutting/rest_map.h"
 #include "studio/render/cut_surface.h"
 #include "studio/render/depth_field.h"
+#include "studio/render/expert_cut.h"
 #include "studio/render/gl_objects.h"
 #include "studio/render/ground_shadow.h"
 #include "studio/render/organ_mesh.h"
@@ -37,6 +38,9 @@ class OrganPainter {
   /// The programs that draw() will use. The caller sets the light of each first.
   std::vector<const Program*> programs(const DrawOptions& options) const;
   void draw(const Gl& gl, const SceneView& scene, const DrawOptions& options);
+
+  /// The organs as update() left them; `version`: a number that no other triangles of them have.
+  std::vector<DrawnOrgan> drawn(std::uint64_t& version) const;
 
   /// Visits the positions of all vertices of all organs [m].
   template <class Visit>

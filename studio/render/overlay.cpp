@@ -60,9 +60,10 @@ struct Line {
 /// All texts, and the panels behind them.
 struct Plan {
   std::vector<Line> lines;
-  PixelBox names, facts, plot, verdict, warning, legend, caption;
-  PixelBox bar;    ///< the legend's colours
-  PixelBox curve;  ///< inside of the plot
+  PixelBox names, facts, plot, verdict, warning, legend, caption, marks;
+  PixelBox bar;                   ///< the legend's colours
+  std::vector<PixelBox> samples;  ///< of the marks
+  PixelBox curve;                 ///< inside of the plot
   double top_force = 1;
 };
 
@@ -163,6 +164,8 @@ struct Overlay::Parts {
   void plan_plot(const OverlayData& data, Plan& plan);
   void plan_banners(const OverlayData& data, Plan& plan);
   void plan_legend(const OverlayData& data, Plan& plan);
+  void plan_marks(const OverlayData& data, Plan& plan);
+  void draw_samples(cv::Mat& rgb, const OverlayData& data, const Plan& plan) const;
   void draw_bar(cv::Mat& rgb, const Legend& legend, const PixelBox& bar) const;
   void draw_curve(cv::Mat& rgb, const OverlayData& data, const Plan& plan) const;
   Line line(Font& font, const std::string& text, int x, int y, const Ink& ink) {
@@ -187,10 +190,11 @@ void Overlay::Parts::add_fact(const Fact& fact, int x, int y, int inner, Plan& p
 /// picture the names stand at the top and the rest is at the bottom right, so that the tool has the room above.
 void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
   const int pad = px(16), step = px(28), margin = px(20), gap = px(16);
+  const std::string role = data.role.empty() ? "session" : data.role;
   const bool is_short = is_narrow || data.level != OverlayLevel::full;
   std::vector<Fact> facts = facts_of(data);
   std::erase_if(facts, [&](const Fact& fact) { return fact.value.empty() || (is_short && fact.is_detail); });
-  const int most = width - 2 * margin - 2 * pad, label = small.width("session") + gap;
+  const int most = width - 2 * margin - 2 * pad, label = small.width(role) + gap;
   const std::string title = is_short ? "" : large.shortened(data.title, std::min(px(440), most));
   const std::string session = small.shortened_inside(data.session, std::min(px(340), most - label));
   int inner = px(300);
@@ -202,10 +206,10 @@ void Overlay::Parts::plan_facts(const OverlayData& data, Plan& plan) {
   if (is_narrow && !session.empty()) {
     const int names = label + small.width(session);
     plan.names = {margin, margin, names + 2 * pad, px(43)};
-    add_fact({"session", session}, x, margin + px(13), names, plan);
+    add_fact({role, session}, x, margin + px(13), names, plan);
   } else if (!is_narrow) {
     if (!title.empty()) plan.lines.push_back(line(large, title, x, y, kWhite)), y += px(38);
-    if (!session.empty()) add_fact({"session", session}, x, y, inner, plan), y += step;
+    if (!session.empty()) add_fact({role, session}, x, y, inner, plan), y += step;
     if (!ghost.empty()) {
       add_fact({"in blue", ghost}, x, y, inner, plan), y += step;
       for (Line& line : std::span(plan.lines).last(2)) line.ink = kBlue;
@@ -311,6 +315,40 @@ void Overlay::Parts::plan_banners(const OverlayData& data, Plan& plan) {
                               plan.caption.y + px(13) + int(i) * px(32), kWhite));
 }
 
+/// Top left, below what stands there.
+void Overlay::Parts::plan_marks(const OverlayData& data, Plan& plan) {
+  if (data.marks.empty()) return;
+  const int pad = px(16), step = px(24), sample = px(22), gap = px(10);
+  int y = px(10);
+  for (const PixelBox& box : {plan.names, is_narrow ? PixelBox{} : plan.facts, plan.verdict, plan.legend})
+    if (box.height > 0 && box.x < width / 2 && box.y < height / 3) y = std::max(y, box.y + box.height);
+  const int x = px(20), top = y + px(10), most = width - 2 * x - 2 * pad - sample - gap;
+  int wide = 0, row = top + px(13);
+  for (const MarkMeaning& mark : data.marks) {
+    const std::string text = small.shortened(mark.text, most);
+    plan.samples.push_back({x + pad, row, sample, px(17)});
+    plan.lines.push_back(line(small, text, x + pad + sample + gap, row, kWhite));
+    wide = std::max(wide, small.width(text)), row += step;
+  }
+  plan.marks = {x, top, wide + sample + gap + 2 * pad, px(43) + step * int(data.marks.size() - 1)};
+}
+
+/// Marks as they are in the picture.
+void Overlay::Parts::draw_samples(cv::Mat& rgb, const OverlayData& data, const Plan& plan) const {
+  for (std::size_t i = 0; i < plan.samples.size(); ++i) {
+    const PixelBox& box = plan.samples[i];
+    const auto& [red, green, blue] = data.marks[i].colour;
+    const cv::Scalar colour{255 * red, 255 * green, 255 * blue};
+    const cv::Point left(box.x, box.y + box.height / 2), right(box.x + box.width, left.y);
+    if (data.marks[i].is_line)
+      cv::line(rgb, left, right, colour, std::max(1, px(4)), cv::LINE_AA);
+    else
+      for (const int share : {1, 3, 5})
+        cv::circle(rgb, left + cv::Point(box.width * share / 6, 0), std::max(1, px(3)), colour, cv::FILLED,
+                   cv::LINE_AA);
+  }
+}
+
 void Overlay::Parts::draw_bar(cv::Mat& rgb, const Legend& legend, const PixelBox& bar) const {
   const int count = int(legend.colours.size());
   for (int x = 0; x < bar.width && count > 0; ++x) {
@@ -333,6 +371,7 @@ Plan Overlay::Parts::plan(const OverlayData& data) {
   Plan plan;
   if (data.level >= OverlayLevel::small) plan_facts(data, plan), plan_plot(data, plan), plan_legend(data, plan);
   plan_banners(data, plan);
+  if (data.level >= OverlayLevel::small) plan_marks(data, plan);
   return plan;
 }
 
@@ -371,15 +410,16 @@ void Overlay::draw(Frame& frame, const OverlayData& data) {
   const int radius = parts_->px(10);
   std::vector<Beneath> faded;
   for (const PixelBox* panel :
-       {&plan.names, &plan.facts, &plan.plot, &plan.verdict, &plan.legend, &plan.warning, &plan.caption}) {
+       {&plan.names, &plan.facts, &plan.plot, &plan.verdict, &plan.legend, &plan.warning, &plan.caption, &plan.marks}) {
     const PixelBox& box = *panel;
     const cv::Rect place = cv::Rect(box.x, box.y, box.width, box.height) & cv::Rect(0, 0, rgb.cols, rgb.rows);
-    const bool must_stay = (&box == &plan.verdict && data.verdict_tone == VerdictTone::bad) ||
+    // Of a pair, nothing else says whose half it is.
+    const bool must_stay = &box == &plan.names || (&box == &plan.verdict && data.verdict_tone == VerdictTone::bad) ||
                            (&box == &plan.caption && data.level == OverlayLevel::caption);
     const double shown = must_stay ? 1 : share_shown(box, data.tools, parts_->px(40));
     if (shown < 1 && place.area() > 0) faded.push_back({place, rgb(place).clone(), shown});
   }
-  for (const PixelBox& box : {plan.names, plan.facts, plan.plot, plan.verdict, plan.legend, plan.caption})
+  for (const PixelBox& box : {plan.names, plan.facts, plan.plot, plan.verdict, plan.legend, plan.caption, plan.marks})
     draw_panel(rgb, box, {14, 19, 25}, 176, radius);
   draw_panel(rgb, plan.warning, {170, 24, 18}, 224, radius);
   for (const Line& line : plan.lines)
@@ -387,6 +427,7 @@ void Overlay::draw(Frame& frame, const OverlayData& data) {
         .write(rgb, line.placed.box.x, line.placed.box.y, line.placed.text, line.ink);
   if (plan.plot.height > 0) parts_->draw_curve(rgb, data, plan);
   if (plan.legend.height > 0) parts_->draw_bar(rgb, data.legend, plan.bar);
+  parts_->draw_samples(rgb, data, plan);
   for (const Beneath& beneath : faded) beneath.shine_through(rgb);
 }
 
@@ -399,7 +440,8 @@ std::vector<PlacedText> Overlay::layout(const OverlayData& data) {
 std::vector<PixelBox> Overlay::standing_panels(const OverlayData& data) {
   const Plan plan = parts_->plan(data);
   std::vector<PixelBox> panels;
-  for (const PixelBox& box : {plan.names, plan.facts, plan.plot, plan.verdict, plan.legend, plan.warning, plan.caption})
+  for (const PixelBox& box :
+       {plan.names, plan.facts, plan.plot, plan.verdict, plan.legend, plan.warning, plan.caption, plan.marks})
     if (box.height > 0) panels.push_back(box);
   return panels;
 }

@@ -25,6 +25,13 @@ struct HandLoad {
   bool is_blade = false;  ///< the depth is that of the cut, which has no limit
 };
 
+/// What the marks of one colour mean.
+struct MarkMeaning {
+  Colour colour{};
+  std::string text;
+  bool is_line = false;  ///< else they are dots
+};
+
 /// Whether a session stands still while the one beside it goes on.
 enum class Stands { no, before_start, after_end };
 
@@ -38,6 +45,7 @@ struct OverlayData {
   std::string title;    ///< of the scene
   std::string model;    ///< structure of the tissue: "CTPM"
   std::string session;  ///< which recording it is, if there may be several
+  std::string role;     ///< of a pair, whose it is: expert or trainee; empty: said of none
   std::string ghost;    ///< whose tool is shown through; not told in a narrow picture
   double time = 0;      ///< [s]
   Stands stands = Stands::no;
@@ -57,6 +65,7 @@ struct OverlayData {
   std::string caption;              ///< what happens now
   std::vector<ForcePoint> history;  ///< in order of time; empty: no plot
   Legend legend;                    ///< of the view; not drawn without a title
+  std::vector<MarkMeaning> marks;   ///< in the picture; empty: no panel
   double plot_span = 5;             ///< time that the plot covers, up to now [s], > 0
   double least_top_force = 0.1;     ///< smallest upper end of the plot's axis [N], > 0
   std::vector<Pixel> tools;         ///< points of the tools: panels near them fade

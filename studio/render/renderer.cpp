@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <future>
+#include <numbers>
 #include <optional>
 #include <thread>
 
@@ -12,8 +13,11 @@
 #include "studio/render/backdrop.h"
 #include "studio/render/edge_smoothing.h"
 #include "studio/render/element_values.h"
+#include "studio/render/expert_cut.h"
+#include "studio/render/footprint.h"
 #include "studio/render/gl_context.h"
 #include "studio/render/gl_objects.h"
+#include "studio/render/marks.h"
 #include "studio/render/obstacle_mesh.h"
 #include "studio/render/organ_painter.h"
 #include "studio/render/shaders.h"
@@ -22,8 +26,9 @@
 namespace ctpm::render {
 namespace {
 
-constexpr double kGroundExtent = 1.45;  // side of the ground that can be shaded, against the scene's size
-constexpr double kLineWidth = 0.006;    // of the line of a cut in a section, against the scene's size
+constexpr double kGroundExtent = 1.45;   // side of the ground that can be shaded, against the scene's size
+constexpr double kLineWidth = 0.006;     // of the line of a cut in a section, against the scene's size
+constexpr double kExpertWidth = 0.0045;  // of the line of an expert's cut, against the picture's height
 
 Vec3 unit(Vec3 v) { return v / norm(v); }
 
@@ -31,41 +36,6 @@ Mat4 rigid(Quat turn, Vec3 origin) {
   const Vec3 x = rotate(turn, {1, 0, 0}), y = rotate(turn, {0, 1, 0}), z = rotate(turn, {0, 0, 1});
   return {x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, origin.x, origin.y, origin.z, 1};
 }
-
-/// Grows a rectangle around projected points.
-class Footprint {
- public:
-  Footprint(const Mat4& clip_from_world, int width, int height) : m_(clip_from_world), width_(width), height_(height) {}
-
-  void add(Vec3 p) {
-    const double w = m_[3] * p.x + m_[7] * p.y + m_[11] * p.z + m_[15];
-    if (w <= 0) {
-      everywhere_ = true;
-      return;
-    }
-    const double x = (m_[0] * p.x + m_[4] * p.y + m_[8] * p.z + m_[12]) / w;
-    const double y = (m_[1] * p.x + m_[5] * p.y + m_[9] * p.z + m_[13]) / w;
-    left_ = std::min(left_, x), right_ = std::max(right_, x), bottom_ = std::min(bottom_, y), top_ = std::max(top_, y);
-  }
-
-  /// The pixels that the points and a border around them cover; may be empty.
-  PixelRect pixels() const {
-    constexpr int kBorder = 3;
-    if (everywhere_) return {0, 0, width_, height_};
-    const auto at = [](double clip, int size) { return (0.5 + 0.5 * std::clamp(clip, -1.0, 1.0)) * size; };
-    const int x0 = std::max(0, int(at(left_, width_)) - kBorder),
-              x1 = std::min(width_, int(at(right_, width_)) + kBorder + 1);
-    const int y0 = std::max(0, int(at(bottom_, height_)) - kBorder),
-              y1 = std::min(height_, int(at(top_, height_)) + kBorder + 1);
-    return {x0, y0, std::max(0, x1 - x0), std::max(0, y1 - y0)};
-  }
-
- private:
-  Mat4 m_;
-  int width_, height_;
-  double left_ = 2, right_ = -2, bottom_ = 2, top_ = -2;
-  bool everywhere_ = false;
-};
 
 }  // namespace
 
@@ -90,6 +60,7 @@ struct Renderer::Parts {
   VertexArray spheres, rods;
   std::vector<float> instances;
   std::vector<ElementValue> elements;
+  ExpertMarker marker;
   std::unique_ptr<GroundShadow> shadow;
 
   // The scene's frame: up, the ground plane, its size.
@@ -113,10 +84,12 @@ struct Renderer::Parts {
   void set_light(const Program& program, const State& state, const DrawOptions& options);
   void draw_spheres(const State& state, const DrawOptions& options);
   void draw_elements(const State& state, const DrawOptions& options);
+  void draw_rods(const State& state, const DrawOptions& options);
   VertexArray array_of(const ToolMesh& mesh) const;
   void draw_tools(const State& state, const DrawOptions& options);
   void draw_tool(const Hand& hand, const State& state, const DrawOptions& options, double ghost);
   void draw_ghost(const State& state, const DrawOptions& options);
+  std::vector<Mark> draw_expert(const State& state, const DrawOptions& options);
   void draw_obstacles(const State& state, const DrawOptions& options);
   void cast_shadow(DrawnObstacle& obstacle, const Cutaway& cutaway);
   void draw_behind(const DrawOptions& options);
@@ -272,7 +245,6 @@ void Renderer::Parts::draw_spheres(const State& state, const DrawOptions& option
 }
 
 void Renderer::Parts::draw_elements(const State& state, const DrawOptions& options) {
-  const Gl& g = gl();
   const double scale = options.full_scale > 0 ? options.full_scale : default_full_scale(options.quantity);
   measure_elements(*scene.model, state, options.quantity, elements);
   double radius = 0;
@@ -286,9 +258,14 @@ void Renderer::Parts::draw_elements(const State& state, const DrawOptions& optio
     const double width = radius * (1 + 1.2 * std::min(std::abs(part), 1.0));  // larger values are thicker
     for (const double x : {a.x, a.y, a.z, b.x, b.y, b.z, width, c.x, c.y, c.z}) instances.push_back(float(x));
   }
-  rods.set_stream(g, instances);
+  draw_rods(state, options);
+}
+
+void Renderer::Parts::draw_rods(const State& state, const DrawOptions& options) {
+  if (instances.empty()) return;
+  rods.set_stream(gl(), instances);
   set_light(rod, state, options);
-  g.BindVertexArray(rods.id), g.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(instances.size() / 10));
+  gl().BindVertexArray(rods.id), gl().DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(instances.size() / 10));
 }
 
 void Renderer::Parts::draw_tools(const State& state, const DrawOptions& options) {
@@ -314,6 +291,36 @@ void Renderer::Parts::draw_ghost(const State& state, const DrawOptions& options)
   g.Enable(GL_BLEND), g.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   draw_tool(*options.ghost, state, options, 1);
   g.Disable(GL_BLEND);
+}
+
+/// The line, which organs and tools hide. Returns the marks that nothing hides.
+std::vector<Mark> Renderer::Parts::draw_expert(const State& state, const DrawOptions& options) {
+  if (!options.expert) return {};
+  std::uint64_t version = 0;
+  const std::vector<DrawnOrgan> drawn = organs.drawn(version);
+  ExpertMarks marks = marker.place(*scene.model, options.expert, drawn, version, state);
+  const Vec3 eye = options.camera.eye, colour = linear(kExpertColour);
+  const double half_view = std::tan(options.camera.fov_deg * std::numbers::pi / 360);
+  instances.clear();
+  for (const auto& [from, to] : marks.line) {
+    if (options.cutaway.leaves_out(0.5 * (from + to))) continue;
+    const double radius = kExpertWidth * half_view * norm(0.5 * (from + to) - eye);
+    // On the skin and a little nearer, whose triangles are as coarse as it is.
+    const auto raised = [&](Vec3 p) { return p + radius * unit(eye - p); };
+    const Vec3 a = raised(from), b = raised(to);
+    for (const double x : {a.x, a.y, a.z, b.x, b.y, b.z, radius, colour.x, colour.y, colour.z})
+      instances.push_back(float(x));
+  }
+  draw_rods(state, options);
+  std::erase_if(marks.strays, [&](Vec3 p) { return options.cutaway.leaves_out(p); });
+  if (marks.strays.empty()) return {};
+  // With a dark rim, so that they are seen on every tissue.
+  constexpr double kRim = 2, kDot = 1.5;
+  Mark dots{
+      .shape = Mark::Shape::dot, .points = std::move(marks.strays), .colour = kStrayColour, .label = "", .size = kDot};
+  Mark rims = dots;
+  rims.colour = {0.08, 0.09, 0.11}, rims.size = kRim;
+  return {std::move(rims), std::move(dots)};
 }
 
 void Renderer::Parts::draw_obstacles(const State& state, const DrawOptions& options) {
@@ -466,10 +473,12 @@ Frame Renderer::draw(const State& state, const DrawOptions& options) {
     for (const Program* program : p.organs.programs(options)) p.set_light(*program, state, options);
     p.organs.draw(gl, p.scene, options);
   }
+  const std::vector<Mark> marks = p.draw_expert(state, options);
   p.draw_ghost(state, options);
   gl.Flush();
   behind.get();
   p.read_frame();
+  draw_marks(p.frame, options.camera, marks);
   return std::move(p.frame);
 }
 

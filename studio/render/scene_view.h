@@ -45,6 +45,7 @@ struct OrganLook {
 OrganLook look_of(std::string_view organ_name);
 
 class CutSurface;
+class ExpertCut;
 
 /// The scene to draw: a Model, and one surface and look for each of its organs.
 struct SceneView {
@@ -121,6 +122,8 @@ struct DrawOptions {
   bool show_tool = true;           ///< those of both hands, at the poses of State::last_inputs
   bool show_ground = true;         ///< a soft shadow below the scene
   std::optional<Hand> ghost = {};  ///< a tool of another session: it is seen through, and casts nothing
+  std::shared_ptr<const ExpertCut> expert =
+      nullptr;  ///< its line is on the organs, and what is cut elsewhere is marked
 };
 
 /// Full scale of the colours: 20 % stretch, 0.5 rad tilt, 0.05 N force.

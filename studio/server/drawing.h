@@ -18,6 +18,7 @@ namespace ctpm::server {
 struct DrawingRequest {
   views::LookRequest look;
   std::optional<render::PictureSize> size;  ///< of drawings; none: the page draws
+  std::string expert = {};  ///< file of the session whose cut is shown on the organs, if it is of this scene
 };
 
 /// A request that was checked, and what it comes to.

@@ -92,8 +92,9 @@ void CutFollower::draw_surfaces(const State& state) {
   const std::uint32_t topology = drawn_ && drawn_->triangles == head_of_triangles(stage_, drawn_->topology) + triangles
                                      ? drawn_->topology
                                      : ++made;
-  DrawnCut drawn{CutKey(state), {}, topology, head_of_triangles(stage_, topology) + triangles};
-  for (const render::CutSurface& cut : surfaces_) drawn.surfaces.push_back(cut.surface());
+  DrawnCut drawn{CutKey(state), {}, {}, topology, head_of_triangles(stage_, topology) + triangles};
+  for (const render::CutSurface& cut : surfaces_)
+    drawn.surfaces.push_back(cut.surface()), drawn.outer_triangles.push_back(cut.outer_triangle_count());
   drawn_ = std::make_shared<const DrawnCut>(std::move(drawn));
 }
 

@@ -18,9 +18,10 @@ namespace ctpm::server {
 /// What is drawn of one cut. It never changes.
 struct DrawnCut {
   CutKey key;
-  std::vector<Surface> surfaces;  ///< at rest, of every organ
-  std::uint32_t topology = 0;     ///< number of the triangles; never reused
-  std::string triangles;          ///< message of that topology
+  std::vector<Surface> surfaces;             ///< at rest, of every organ
+  std::vector<std::size_t> outer_triangles;  ///< of each, which come first
+  std::uint32_t topology = 0;                ///< number of the triangles; never reused
+  std::string triangles;                     ///< message of that topology
 
   std::size_t bytes() const;  ///< of memory
 };

@@ -2,6 +2,8 @@
 
 #include "recordings/session_reader.h"
 #include "studio/compare/matched_moments.h"
+#include "studio/compare/session_track.h"
+#include "studio/film/expert_cut_of.h"
 #include "studio/film/export_video.h"
 #include "studio/film/sidecar.h"
 #include "studio/output/json_writer.h"
@@ -37,6 +39,7 @@ std::string in_the_way_of(const std::string& video) {
 Result<std::string> draw_session(Parameters& parameters, const CallContext& context) {
   const std::uint32_t stage = std::uint32_t(parameters.number("stage", 0, Desk::kMostStages - 1));
   const std::optional<std::string> size = parameters.text_if("size");
+  const std::optional<std::string> expert = parameters.text_if("expert");
   DrawingRequest request{look_of(parameters), {}};
   if (!context.desk) parameters.refuse("stage", "only a page with a WebSocket has stages");
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
@@ -47,6 +50,11 @@ Result<std::string> draw_session(Parameters& parameters, const CallContext& cont
       return Error{"size", "got " + *size + ", a page's drawings have at most " + std::to_string(kMostSide) + " a side",
                    ""};
     request.size = *parsed;
+  }
+  if (expert) {
+    const Result<std::string> file = context.folder.find(*expert);
+    if (!file) return file.errors();
+    request.expert = *file;
   }
   const Result<DrawingPlan> plan = context.desk->draw_as(stage, request);
   if (!plan) return plan.errors();
@@ -77,7 +85,10 @@ Result<std::string> name_export(Parameters& parameters, const CallContext& conte
 Result<std::string> export_session(Parameters& parameters, const CallContext& context) {
   const std::string path = parameters.text("path"), output = parameters.text("output");
   const std::string beside = parameters.text_if("beside").value_or("");
+  const std::string ghost = parameters.text_if("ghost").value_or("");
   const std::string align = parameters.text_if("align").value_or("");
+  const bool has_expert_line = parameters.flag("expert_line", true);
+  if (!beside.empty() && !ghost.empty()) parameters.refuse("ghost", "a video has a session beside it or a ghost");
   film::ExportOptions options;
   const std::string size = parameters.text_if("size").value_or("1280x720");
   options.fps = parameters.number_if("fps", 1, 240).value_or(options.fps);
@@ -98,18 +109,29 @@ Result<std::string> export_session(Parameters& parameters, const CallContext& co
   if (const std::string file = in_the_way_of(*place); !file.empty())
     return Error{file, "exists already", "choose another name"};
   std::vector<recordings::SessionReader> readers;
-  for (const std::string& name : {path, beside}) {
+  for (const std::string& name : {path, beside, ghost}) {
     if (name.empty()) continue;
     Result<recordings::SessionReader> reader = open_reader(context, name);
     if (!reader) return reader.errors();
     readers.push_back(std::move(*reader));
   }
+  std::string note;
   std::vector<recordings::SessionReader*> sessions;
   for (recordings::SessionReader& reader : readers) sessions.push_back(&reader);
   if (sessions.size() == 2) {
     Result<compare::MatchedMoments> matched = compare::match_sessions(*sessions[0], *sessions[1], align);
     if (!matched) return matched.errors();
     options.matched = std::move(*matched);
+    const Result<Done> same = compare::check_same_scene(*sessions[0], *sessions[1]);
+    if (!same && !ghost.empty()) return same.errors();
+    if (same && has_expert_line) {
+      Result<std::shared_ptr<const render::ExpertCut>> cut = film::expert_cut_of(*sessions[ghost.empty() ? 0 : 1]);
+      if (cut)
+        options.expert = std::move(*cut);
+      else
+        note = "without the line of the expert's cut: " + to_string(cut.errors()[0]);
+    }
+    if (!ghost.empty()) options.ghost = sessions.back(), sessions.pop_back();
   }
   options.progress = context.progress;
   options.should_stop = context.should_stop;
@@ -124,7 +146,7 @@ Result<std::string> export_session(Parameters& parameters, const CallContext& co
       .member("codec", outcome->video.codec)
       .member("same_as_recorded", outcome->same_as_recorded())
       .member("elapsed_s", outcome->times.elapsed)
-      .member("note", outcome->video.note)
+      .member("note", outcome->video.note + (outcome->video.note.empty() || note.empty() ? "" : "; ") + note)
       .end_object();
   return json.text();
 }

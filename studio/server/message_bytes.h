@@ -12,7 +12,7 @@ namespace ctpm::server {
 static_assert(std::endian::native == std::endian::little, "messages are little-endian");
 
 /// The first number of a binary message. PROTOCOL.md gives the rest.
-enum MessageKind : std::uint32_t { kTriangles = 1, kFrame = 2, kShapes = 3, kSpheres = 4, kDrawing = 5 };
+enum MessageKind : std::uint32_t { kTriangles = 1, kFrame = 2, kShapes = 3, kSpheres = 4, kDrawing = 5, kExpert = 6 };
 
 /// Appends plain values to a binary message.
 class MessageBytes {

@@ -87,16 +87,34 @@ Picture PictureMaker::make(const State& state, const FrameFacts& facts, const st
   out.add(facts.hand), out.add(float(facts.tick_time)), out.add(std::uint32_t(facts.late_ticks));
   out.add(float(facts.tick_p99)), out.add(float(facts.slip));
   out.add(std::uint32_t(drawn->surfaces.size()));
+  vertex_.resize(drawn->surfaces.size());
   for (std::size_t i = 0; i < drawn->surfaces.size(); ++i) {
-    places_.place(i, drawn->surfaces[i], state, vertex_);
-    add_positions(out, vertex_);
+    places_.place(i, drawn->surfaces[i], state, vertex_[i]);
+    add_positions(out, vertex_[i]);
   }
   if (model_.hands > 1) {
     const stepping::HandReport& report = facts.second.report;
     add_pose(in.second);
     out.add(report.tool_force), out.add(float(report.depth)), out.add(report.contacts), out.add(facts.second.hand);
   }
-  return {stage_, drawn->topology, {drawn, &drawn->triangles}, std::move(out.text)};
+  Picture picture{stage_, drawn->topology, {drawn, &drawn->triangles}, std::move(out.text)};
+  if (expert_) picture.expert = expert_message(state, facts.request, *drawn);
+  return picture;
+}
+
+/// Message with the line of the expert's cut on the organs as they were placed last, and what is cut elsewhere.
+std::string PictureMaker::expert_message(const State& state, std::uint32_t request, const DrawnCut& drawn) {
+  std::vector<render::DrawnOrgan> organs;
+  for (std::size_t i = 0; i < drawn.surfaces.size(); ++i)
+    organs.push_back({&drawn.surfaces[i], drawn.outer_triangles[i], &vertex_[i]});
+  const std::uint64_t version = std::uint64_t(drawn.topology) << 32 | std::uint32_t(drawn.key.points());
+  const render::ExpertMarks marks = marker_.place(model_, expert_, organs, version, state);
+  MessageBytes out;
+  out.add(std::uint32_t(kExpert)), out.add(stage_), out.add(request);
+  out.add(std::uint32_t(marks.line.size())), out.add(std::uint32_t(marks.strays.size()));
+  for (const auto& [from, to] : marks.line) out.add(from), out.add(to);
+  for (const Vec3& stray : marks.strays) out.add(stray);
+  return std::move(out.text);
 }
 
 std::int64_t severed_in(const State& state) {

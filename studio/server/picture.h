@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/contact/drawn_surfaces.h"
 #include "core/model/model.h"
 #include "core/model/state.h"
 #include "core/stepping/step.h"
+#include "studio/render/expert_cut.h"
 #include "studio/server/drawn_cuts.h"
 
 namespace ctpm::server {
@@ -44,7 +46,7 @@ struct Picture {
   std::uint32_t topology = 0;                    ///< number of the triangles that the frame belongs to; never reused
   std::shared_ptr<const std::string> triangles;  ///< message of that topology
   std::string frame;                             ///< message; its count of missed frames is still 0
-  std::string drawing = {};                      ///< message that is sent before the frame; empty: none
+  std::string drawing = {}, expert = {};         ///< messages that are sent before the frame; empty: none
 };
 
 /// Byte offset of the count of missed frames in a frame.
@@ -59,6 +61,9 @@ class PictureMaker {
   PictureMaker(const Model& model, std::uint32_t stage)
       : PictureMaker(model, stage, std::make_shared<DrawnCuts>(model, stage)) {}
 
+  /// Whose cut is shown on the organs in the pictures that follow; null: nobody's. It is of the same scene.
+  void show(std::shared_ptr<const render::ExpertCut> expert) { expert_ = std::move(expert); }
+
   /// The picture of a State. A cut that was not drawn yet is drawn now.
   Picture make(const State& state, const FrameFacts& facts);
 
@@ -72,6 +77,7 @@ class PictureMaker {
   };
   std::shared_ptr<const DrawnCut> draw(const State& state);
   Picture make(const State& state, const FrameFacts& facts, const std::shared_ptr<const DrawnCut>& drawn);
+  std::string expert_message(const State& state, std::uint32_t request, const DrawnCut& drawn);
 
   const Model& model_;
   std::uint32_t stage_;
@@ -79,7 +85,9 @@ class PictureMaker {
   contact::DrawnSurfaces places_;
   std::vector<Follower> followers_;
   std::uint64_t uses_ = 0;
-  std::vector<Vec3> vertex_;
+  std::vector<std::vector<Vec3>> vertex_;  ///< of each organ
+  std::shared_ptr<const render::ExpertCut> expert_;
+  render::ExpertMarker marker_;
 };
 
 /// Number of elements that are severed in a State.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "studio/compare/session_track.h"
+#include "studio/film/expert_cut_of.h"
 #include "studio/film/reel.h"
 #include "studio/server/glimpse.h"
 #include "studio/server/seeker.h"
@@ -77,6 +79,32 @@ Result<double> Stage::full_scale(render::ElementQuantity quantity) {
   return full_scales_[quantity] = *found;
 }
 
+/// What an expert cut in that session; null: it is of another scene, or damaged, which is said once.
+std::shared_ptr<const render::ExpertCut> Stage::expert_of(const std::string& file) {
+  const std::optional<KnownFiles::Stamp> stamp = KnownFiles::stamp_of(file);
+  {
+    const std::lock_guard lock(mutex_);
+    if (stamp && known_expert_.file == file && known_expert_.stamp == stamp) return known_expert_.cut;
+  }
+  const auto find = [&]() -> Result<std::shared_ptr<const render::ExpertCut>> {
+    Result<recordings::SessionReader> reader = recordings::SessionReader::open(file);
+    if (!reader) return reader.errors();
+    if (!compare::check_same_scene(*reader, reader_)) return std::shared_ptr<const render::ExpertCut>();
+    return film::expert_cut_of(*reader);
+  };
+  const Result<std::shared_ptr<const render::ExpertCut>> cut = find();
+  if (!cut) outbox_->send(stage_failed(number_, cut.errors()));
+  const std::lock_guard lock(mutex_);
+  known_expert_ = {file, stamp, cut ? *cut : nullptr};
+  return known_expert_.cut;
+}
+
+/// The one whose cut is shown.
+std::shared_ptr<const render::ExpertCut> Stage::expert() {
+  const std::lock_guard lock(mutex_);
+  return plan_ ? plan_->look.draw.expert : nullptr;
+}
+
 /// See film::telling_state(). Null: the session is damaged.
 const State* Stage::told() {
   const std::lock_guard lock(told_mutex_);
@@ -105,6 +133,7 @@ Result<DrawingPlan> Stage::draw_as(const DrawingRequest& request, const std::vec
     draw.full_scale = views::unit_of(draw.quantity) * largest;
     plan->legend = render::legend_of(reader_.start().model, draw);
   }
+  if (!request.expert.empty()) plan->look.draw.expert = expert_of(request.expert);
   const std::lock_guard lock(mutex_);
   plan_ = *plan, is_plan_new_ = true;
   return plan;
@@ -208,6 +237,7 @@ void Stage::replay() {
     if (!there) outbox_->send(stage_failed(number_, there.errors())), moments_->rest(Moments::Rest::none);
     if (!there || !*there) continue;
     const State& state = seeker.cursor().state();
+    maker.show(expert());
     Picture picture = maker.make(state, facts(seeker, wish->request));
     const Result<bool> is_drawn = follow_plan(drawing);
     if (!is_drawn) outbox_->send(stage_failed(number_, is_drawn.errors()));
@@ -248,6 +278,7 @@ void Stage::glance() {
     facts.hand = record.inputs.position, facts.force = record.tool_force, facts.depth = record.depth;
     facts.contacts = record.contacts, facts.tick_time = record.tick_time, facts.slip = record.slip;
     facts.second = {record.second, record.inputs.second.position};
+    maker.show(expert());
     show(maker.make_glimpse(std::move(glimpse->state), facts), *wish, true);
   }
 }

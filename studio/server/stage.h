@@ -17,6 +17,7 @@
 #include "studio/server/cuts_ahead.h"
 #include "studio/server/drawing.h"
 #include "studio/server/drawn_cuts.h"
+#include "studio/server/known_files.h"
 #include "studio/server/moments.h"
 #include "studio/server/outbox.h"
 #include "studio/server/picture.h"
@@ -74,6 +75,8 @@ class Stage {
   void wait_for_glimpse(const Wish& wish);
   Turn wait_for_turn();
   const State* told();
+  std::shared_ptr<const render::ExpertCut> expert_of(const std::string& file);
+  std::shared_ptr<const render::ExpertCut> expert();
   Result<double> full_scale(render::ElementQuantity quantity);
   Result<bool> follow_plan(Drawing& drawing);
   std::optional<Wish> next();
@@ -102,6 +105,12 @@ class Stage {
   std::optional<DrawingPlan> plan_;                           ///< nothing is drawn before the first one
   bool is_plan_new_ = false;                                  ///< the replay does not follow it yet
   std::map<render::ElementQuantity, double> full_scales_;     ///< of a film of this session alone
+  struct KnownExpert {
+    std::string file;
+    std::optional<KnownFiles::Stamp> stamp;
+    std::shared_ptr<const render::ExpertCut> cut;
+  };
+  KnownExpert known_expert_;  ///< the last one
   std::mutex told_mutex_;
   std::unique_ptr<const State> told_;  ///< once it was asked for
   bool ends_ = false;

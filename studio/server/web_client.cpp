@@ -169,7 +169,7 @@ void WebClient::wake() {
 }
 
 /// What is sent next: control messages first, then the newest picture of a stage, before it its triangles, if the page
-/// does not have them, and its drawing.
+/// does not have them, its drawing and the expert's cut.
 std::optional<WebClient::Message> WebClient::next_message() {
   const std::lock_guard lock(mutex_);
   if (!queue_.empty()) {
@@ -184,7 +184,8 @@ std::optional<WebClient::Message> WebClient::next_message() {
       slot.sent_topology = slot.picture->topology;
       return Message{*slot.picture->triangles, false};
     }
-    if (!slot.picture->drawing.empty()) return Message{std::exchange(slot.picture->drawing, {}), false};
+    for (std::string* before : {&slot.picture->drawing, &slot.picture->expert})
+      if (!before->empty()) return Message{std::exchange(*before, {}), false};
     Message message{std::move(slot.picture->frame), false};
     slot.picture.reset();
     std::memcpy(message.bytes.data() + kMissedOffset, &slot.missed, sizeof slot.missed);

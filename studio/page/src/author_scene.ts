@@ -106,7 +106,7 @@ export class AuthorScene {
   constructor(private readonly connection: Connection, private readonly viewer: Viewer) {
     connection.call<Schema>("scene.schema").then((schema) => (this.schema = schema), () => {});
     connection.onStage(kAuthorStage, (message) => {
-      if (message.kind !== "drawing") this.received.push(message);
+      if (message.kind !== "drawing" && message.kind !== "expert") this.received.push(message);
       if (message.kind === "waiting") this.onFrame();
     });
   }

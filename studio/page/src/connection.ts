@@ -1,6 +1,5 @@
-import { CallFailed, type Drawing, kOtherVersion, kSubprotocol, type Problem, readBinary, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
+import { type Binary, CallFailed, kOtherVersion, kSubprotocol, type Problem, readBinary } from "./protocol";
 
-export type Binary = Triangles | WaitingFrame | Shapes | Spheres | Drawing;
 
 interface TextMessage {
   id?: number;

@@ -28,8 +28,9 @@ function number(text: string): number | undefined {
 const kSizes = ["1280x720", "1920x1080", "854x480", "1080x1080", "720x1280"];
 const kOverlays: [string, string][] = [["full", "full"], ["small", "small"], ["none", "none"]];
 const kAligned: [string, string][] = [["path", "path of the tool, slowing one down"], ["contact", "first contact, slowing one down"], ["cut", "first cut, slowing one down"], ["clock", "both clocks, as they were recorded"]];
-/** How the command brings both together as they are seen here: at an event the page moves one of them, which the command says in seconds. */
-const seenAlign = (player: Player) => player.path ? "path" : player.offset === 0 ? "clock" : String(Number(player.offset.toFixed(6)));
+/** How the command brings both together as they are seen here: at an event the page moves one of them, which the command says in
+    seconds, by which the clock of the second one shows more: the trainee's, or that of a ghost, which is the expert's. */
+const seenAlign = (player: Player, isGhost: boolean) => player.path ? "path" : player.offset === 0 ? "clock" : String(Number((isGhost ? -player.offset : player.offset).toFixed(6)));
 const kNoMoment = { name: "", fault: "" };
 const kNear = 2e-3; // of two times that are one moment [s]
 const kKept = 60000; // until a download has begun [ms]
@@ -44,11 +45,11 @@ async function download(connection: Connection, path: string): Promise<void> {
   setTimeout(() => URL.revokeObjectURL(link.href), kKept);
 }
 
-/** What a film is called unless something else is chosen: beside the session, a trainee's beside an expert's after both; around
-    a moment, with that. */
-function filmName(path: string, beside: string | undefined, moment: string): string {
+/** What a film is called unless something else is chosen: beside the session, a trainee's beside an expert's or with its ghost after
+    both; around a moment, with that. */
+function filmName(path: string, beside: string | undefined, how: "beside" | "ghost", moment: string): string {
   const stem = (file: string) => file.replace(/\.ctpm$/, "");
-  return `${beside === undefined ? stem(path) : `${stem(beside)}-beside-${stem(path).replace(/^.*\//, "")}`}${moment}.mp4`;
+  return `${beside === undefined ? stem(path) : `${stem(beside)}-${how}-${stem(path).replace(/^.*\//, "")}`}${moment}.mp4`;
 }
 
 /** What a film around this moment is to say of a pair's trainee: the worst moment that it is in, else both forces. Empty: nothing. */
@@ -104,6 +105,8 @@ export function ExportForm({ connection, player, look, comparison, job: { progre
 }) {
   const { session } = player.tracks.get(0)!;
   const beside = player.tracks.get(1)?.session.path;
+  const [isGhostWanted, setGhost] = useState(false);
+  const canGhost = !!beside && !player.otherScene, isGhost = canGhost && isGhostWanted; // the expert's in the trainee's session
   const [chosenOutput, setOutput] = useState<string | null>(null), [caption, setCaption] = useState("");
   const [moment, setMoment] = useState(kNoMoment); // that the film is around
   const [from, setFrom] = useState("0"), [to, setTo] = useState("");
@@ -112,7 +115,7 @@ export function ExportForm({ connection, player, look, comparison, job: { progre
   const [isAsSeen, setAsSeen] = useState(true);
   const [slow, setSlow] = useState<string[]>([]), [isDifferentShown, showDifferent] = useState(false);
 
-  const wanted = chosenOutput ?? filmName(session.path, beside, moment.name);
+  const wanted = chosenOutput ?? filmName(session.path, beside, isGhost ? "ghost" : "beside", moment.name);
   const [unused, setUnused] = useState({ by: "", name: "" }); // what is wanted, and what it may be called
   useEffect(() => {
     if (progress) return;
@@ -124,17 +127,20 @@ export function ExportForm({ connection, player, look, comparison, job: { progre
     if (result?.path === chosenOutput) setOutput(null);
   }, [result]);
   const isKnown = unused.by === wanted, output = chosenOutput ?? (isKnown ? unused.name : wanted), isTaken = isKnown && unused.name !== output;
-  const align = chosenAlign === "seen" ? seenAlign(player) : chosenAlign;
+  const align = chosenAlign === "seen" ? seenAlign(player, isGhost) : chosenAlign;
   const filmed = isAsSeen ? asSeen(look, player.viewer.seen(), session.view.up) : { ...look, camera: "" };
   const slowAt = beside ? "" : slow.join(",");
+  const both = isGhost ? { path: beside!, ghost: session.path } : { path: session.path, beside };
+  const hasLine = canGhost ? player.hasExpertLine : true;
   const params = {
-    path: session.path, beside, output, from_s: number(from), to_s: number(to), speed: number(speed), fps: number(fps), size, overlay,
+    ...both, expert_line: hasLine ? undefined : false, output, from_s: number(from), to_s: number(to), speed: number(speed), fps: number(fps), size, overlay,
     align: beside && align, slow_at: slowAt || undefined, caption: caption.trim() || undefined, allow_diverged: isDifferentShown, ...lookParameters(filmed),
   };
+  const clock = player.tracks.get(isGhost ? 1 : 0)!, time = player.timeOf(clock.stage); // of the session by whose clock the times are
   const around = () => {
-    const end = Math.floor(100 * session.info.duration_s) / 100; // one that is rounded up is after the session
-    setFrom(Math.max(0, Math.min(player.time, end) - 1).toFixed(2));
-    setTo(Math.min(end, player.time + 1).toFixed(2));
+    const end = Math.floor(100 * clock.session.info.duration_s) / 100; // one that is rounded up is after the session
+    setFrom(Math.max(0, Math.min(time, end) - 1).toFixed(2));
+    setTo(Math.min(end, time + 1).toFixed(2));
     goTo({ name: `-${Math.max(0, player.timeOf(beside ? 1 : 0)).toFixed(2)}s`, fault: faultAt(player, comparison) });
   };
   /** A caption that nobody has written is that of the moment. */
@@ -142,9 +148,15 @@ export function ExportForm({ connection, player, look, comparison, job: { progre
     if (caption === moment.fault) setCaption(to.fault);
     setMoment(to);
   };
+  /** Times that were chosen are the same moments by the other clock. */
+  const changeGhost = (on: boolean) => {
+    const inIt = (text: string) => (number(text) ? Math.max(0, on ? player.besideAt(number(text)!) : player.firstAt(number(text)!)).toFixed(2) : text);
+    setFrom(inIt(from)), setTo(inIt(to)), setGhost(on);
+  };
   useEffect(() => goTo(kNoMoment), [beside]);
   const words = (flag: string, value: string, usual: string) => (value !== usual && value !== "" ? [flag, value] : []);
-  const shown = command("export", session.path, "-o", output, ...(beside ? ["--beside", beside, "--align", align] : []),
+  const shown = command("export", both.path, "-o", output, ...(isGhost ? ["--ghost", session.path] : beside ? ["--beside", beside] : []),
+    ...(beside ? ["--align", align] : []), ...(hasLine ? [] : ["--no-expert-line"]),
     ...(number(from) ? ["--from-s", from] : []), ...words("--to-s", to, ""), ...words("--speed", speed, "1"), ...words("--fps", fps, "30"),
     ...words("--size", size, kSizes[0]), ...words("--overlay", overlay, "full"), ...words("--slow-at", slowAt, ""), ...words("--caption", caption.trim(), ""),
     ...(isDifferentShown ? ["--allow-diverged"] : []), ...lookWords(filmed));
@@ -174,16 +186,17 @@ export function ExportForm({ connection, player, look, comparison, job: { progre
         {field("from [s]", from, (text) => (setFrom(text), goTo(kNoMoment)), "number")}
         {field("to [s]", to, (text) => (setTo(text), goTo(kNoMoment)), "number")}
       </div>
-      <button type="button" onClick={around}>1 s before {seconds(player.time, 2)} to 1 s after</button>
-      {beside && <p class="hint">These times are by the expert's clock.</p>}
+      <button type="button" onClick={around}>1 s before {seconds(time, 2)} to 1 s after</button>
+      {beside && <p class="hint">These times are by the {isGhost ? "trainee" : "expert"}'s clock.</p>}
       <div class="pair">
         {field("times real speed", speed, setSpeed, "number")}
         {field("pictures a second", fps, setFps, "number")}
       </div>
       {beside ? (
         <>
+          {canGhost && tick(`ghost: ${session.path}, whose tool is shown through in the picture, and its way`, isGhost, changeGhost)}
           {choice("bring both together", chosenAlign, setAlign, [["seen", `as seen here: ${alignedText(player)}`], ...kAligned])}
-          <p class="hint">As seen here, each goes at its own pace. What slows one down, the half that is ahead, shows other moments beside each other than are seen here.</p>
+          {!isGhost && <p class="hint">As seen here, each goes at its own pace. What slows one down, the half that is ahead, shows other moments beside each other than are seen here.</p>}
         </>
       ) : (
         <fieldset>
@@ -199,7 +212,7 @@ export function ExportForm({ connection, player, look, comparison, job: { progre
         {choice("size", size, setSize, kSizes.map((s): [string, string] => [s, s.replace("x", " × ")]))}
         {choice("overlay", overlay, setOverlay, kOverlays)}
       </div>
-      {field(beside ? "caption, in the trainee's half in place of what happens" : "caption, in place of what happens", caption, setCaption)}
+      {field(beside && !isGhost ? "caption, in the trainee's half in place of what happens" : "caption, in place of what happens", caption, setCaption)}
       <p class="hint">{caption.trim() ? "The caption stands" : "What happens is told"} in the picture unless the overlay is none, and in an .mp4 as subtitles and chapters too.</p>
       {session.info.physics_remark && tick("even if the replay differs, marked on every frame", isDifferentShown, showDifferent)}
       <ShownCommand text={shown} />

@@ -1,8 +1,16 @@
+import type { ComponentChildren } from "preact";
 import { isFree, kAxes, kViews, type Look, planeOf, viewOf, withView } from "./look";
 import type { Legend, SceneView } from "./protocol";
 
-/** View, cutaway and camera, as `export` has them. `onOtherSide`: to look at the cutaway's plane from there. */
-export function LookFields({ look, onLook, onOtherSide, view }: { look: Look; onLook: (look: Look) => void; onOtherSide: () => void; view: SceneView }) {
+/** View, cutaway and camera, as `export` has them, and what else there is beside them. `onOtherSide`: to look at the cutaway's
+    plane from there. */
+export function LookFields({ look, onLook, onOtherSide, view, children }: {
+  look: Look;
+  onLook: (look: Look) => void;
+  onOtherSide: () => void;
+  view: SceneView;
+  children?: ComponentChildren;
+}) {
   const choice = (label: string, value: string, set: (value: string) => void, options: [string, string][]) => (
     <label>
       {label}
@@ -33,6 +41,7 @@ export function LookFields({ look, onLook, onOtherSide, view }: { look: Look; on
         </div>
       )}
       {choice("camera", look.camera, (camera) => onLook({ ...look, camera }), cameras)}
+      {children}
     </div>
   );
 }

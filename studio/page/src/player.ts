@@ -1,5 +1,5 @@
-import type { Binary, Connection } from "./connection";
-import type { CameraView, Comparable, ComparisonResult, Drawing, Frame, OpenedSession, Seen, SessionInfo, TimelineData, Shapes } from "./protocol";
+import type { Connection } from "./connection";
+import type { Binary, CameraView, Comparable, ComparisonResult, Drawing, Frame, OpenedSession, Seen, SessionInfo, TimelineData, Shapes } from "./protocol";
 import { freeCamera, isPlain, kPlainLook, type Look, lookParameters, steppedForward } from "./look";
 import { type Alignment, kEventOf, type Place } from "./place";
 import { StageScene } from "./stage_scene";
@@ -11,6 +11,7 @@ export interface Track {
   session: OpenedSession;
   timeline: TimelineData | null;
   scene: StageScene;
+  expert?: string; // the session whose cut the program shows on the organs
 }
 
 /** Longest step of a playback [s]: where the program simulates slower, playing becomes slower instead of jumping. */
@@ -45,6 +46,7 @@ export class Player {
   otherScene = ""; // why the session beside cannot be compared: it is of another scene; empty: it can
   isPathWanted = false; // a link leads to sessions along their path, which is known once they are compared
   look: Look = kPlainLook; // how they are seen
+  hasExpertLine = true; // the expert's cut is on the trainee's organs
   zoom: { from: number; to: number } | null = null; // what the timeline shows, of stage 0 [s]; null: everything
   isPlaying = false;
   pictureAfter: number | null = null; // time from the last move to its picture, a glimpse or not [ms]
@@ -250,7 +252,7 @@ export class Player {
   }
 
   private async lookAt(look: Look, size: string | null): Promise<Seen> {
-    const ask = (stage: number, as: Look) => this.connection.call<Seen>("session.draw", { stage, size: size ?? undefined, ...lookParameters(as) });
+    const ask = (stage: number, as: Look, expert?: string) => this.connection.call<Seen>("session.draw", { stage, size: size ?? undefined, expert, ...lookParameters(as) });
     const first = this.tracks.get(0)!, second = this.tracks.get(1);
     const seen = await ask(0, look);
     seen.camera = steppedForward(seen.camera, size);
@@ -258,7 +260,10 @@ export class Player {
       // As in a video, all of one scene is seen as the first one is.
       const isAlike = JSON.stringify([first.session.view.least, first.session.view.most]) === JSON.stringify([second.session.view.least, second.session.view.most]);
       const camera = isAlike && look.camera !== "follow" ? freeCamera(seen.camera, second.session.view.up) : look.camera;
-      const other = await ask(1, { ...look, camera });
+      const expert = this.hasExpertLine ? first.session.path : undefined;
+      const other = await ask(1, { ...look, camera }, expert);
+      if (second.expert !== expert && !this.isPlaying) this.ask(1);
+      second.expert = expert;
       // The page sees both with one camera: of two scenes, the one that is farther away has both in its picture.
       if (!isAlike && !size && farOf(other.camera) > farOf(seen.camera)) seen.camera = other.camera;
     }
@@ -368,8 +373,9 @@ export class Player {
     requestAnimationFrame(this.step);
   };
 
-  private ask(): void {
+  private ask(only?: number): void {
     for (const [stage, track] of this.tracks) {
+      if (only !== undefined && stage !== only) continue;
       const { ticks, tick_s } = track.session.info;
       const tick = Math.min(Math.max(Math.round(this.timeOf(stage) / tick_s), 0), ticks);
       const request = ++this.request;
@@ -389,6 +395,7 @@ export class Player {
     const track = this.tracks.get(stage);
     if (!track) return;
     if (message.kind === "drawing") this.drawings.set(stage, message);
+    else if (message.kind === "expert") track.scene.setExpert(message);
     else if (message.kind === "triangles") track.scene.setTriangles(message);
     else if (message.kind === "waiting") track.scene.wait(message), this.unanswered.delete(stage), this.drawTogether();
   }

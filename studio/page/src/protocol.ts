@@ -1,4 +1,5 @@
 // The messages of studio/server/PROTOCOL.md. Lengths in metres, forces in newtons, times in seconds.
+import { Reader } from "./reader";
 
 export const kSubprotocol = "ctpm.studio.2"; // with the version of the protocol
 export const kOtherVersion = 4001; // the code of a WebSocket that the program closes because it speaks another version
@@ -295,47 +296,6 @@ export interface Frame extends HandFrame {
   organs: Float32Array[]; // x y z of each vertex
 }
 
-class Reader {
-  at = 0;
-  readonly view: DataView;
-  constructor(readonly bytes: ArrayBuffer) {
-    this.view = new DataView(bytes);
-  }
-  u32(): number {
-    return this.view.getUint32(this.take(4), true);
-  }
-  i32(): number {
-    return this.view.getInt32(this.take(4), true);
-  }
-  f32(): number {
-    return this.view.getFloat32(this.take(4), true);
-  }
-  f64(): number {
-    return this.view.getFloat64(this.take(8), true);
-  }
-  vector(): Vector {
-    return [this.f32(), this.f32(), this.f32()];
-  }
-  // Typed arrays read the machine's own byte order, which is little-endian wherever browsers run.
-  array<T>(make: new (buffer: ArrayBuffer, at: number, count: number) => T, size: number, count: number): T {
-    return new make(this.bytes, this.take(size * count), count);
-  }
-  pad(): void {
-    this.take((4 - (this.at % 4)) % 4);
-  }
-  /** Goes over so many bytes; returns where they begin. */
-  take(bytes: number): number {
-    const from = this.at;
-    if (from + bytes > this.bytes.byteLength) throw new RangeError("a message is shorter than it says");
-    this.at += bytes;
-    return from;
-  }
-  /** Whether something follows. */
-  get hasMore(): boolean {
-    return this.at < this.bytes.byteLength;
-  }
-}
-
 function indices(r: Reader, count: number, vertexCount: number): Uint32Array {
   const index = r.array(Uint32Array, 4, count);
   for (const v of index) if (v >= vertexCount) throw new RangeError("a triangle names a vertex that is not there");
@@ -476,22 +436,40 @@ export interface Drawing {
   rgb: Uint8Array;
 }
 
+/** An expert's cut on the organs of a frame, and what is cut elsewhere. */
+export interface ExpertMarks {
+  kind: "expert";
+  stage: number;
+  request: number;
+  line: Float32Array; // x y z of both ends of each part
+  strays: Float32Array; // x y z of each
+}
+
+function readExpertMarks(r: Reader): ExpertMarks {
+  const stage = r.u32(), request = r.u32(), parts = r.u32(), strays = r.u32();
+  return { kind: "expert", stage, request, line: r.array(Float32Array, 4, 6 * parts), strays: r.array(Float32Array, 4, 3 * strays) };
+}
+
 function readDrawing(r: Reader): Drawing {
   const stage = r.u32(), request = r.u32(), width = r.u32(), height = r.u32();
   return { kind: "drawing", stage, request, width, height, rgb: r.array(Uint8Array, 1, 3 * width * height) };
 }
 
-function readKind(kind: number, r: Reader): Triangles | WaitingFrame | Shapes | Spheres | Drawing {
+/** What is read of a binary message. */
+export type Binary = Triangles | WaitingFrame | Shapes | Spheres | Drawing | ExpertMarks;
+
+function readKind(kind: number, r: Reader): Binary {
   if (kind === 1) return readTriangles(r);
   if (kind === 2) return readHead(r);
   if (kind === 3) return readShapes(r);
   if (kind === 4) return readSpheres(r);
   if (kind === 5) return readDrawing(r);
+  if (kind === 6) return readExpertMarks(r);
   throw new RangeError(`unknown kind of message ${kind}`);
 }
 
 /** Reads a binary message; of a frame its head alone. Throws a RangeError for one that is not as PROTOCOL.md has it. */
-export function readBinary(bytes: ArrayBuffer): Triangles | WaitingFrame | Shapes | Spheres | Drawing {
+export function readBinary(bytes: ArrayBuffer): Binary {
   const reader = new Reader(bytes), message = readKind(reader.u32(), reader);
   reader.pad();
   if (reader.hasMore) throw new RangeError("a message is longer than it says");

@@ -3,6 +3,7 @@ import { useCallback, useEffect, useMemo, useRef, useState } from "preact/hooks"
 import type { Connection } from "./connection";
 import { Compare, knownComparison } from "./compare";
 import { drawInto, sizeOf, watchSize } from "./drawing";
+import { ExpertLegend } from "./expert_line";
 import { ExportForm, useExport } from "./export_form";
 import { freeCamera, isFree, kPlainLook, type Look, lookText, mirrored, planeOf } from "./look";
 import { LegendBar, LookFields } from "./look_fields";
@@ -40,6 +41,7 @@ export function Review({ connection, listing, place, onPlace }: {
   const [look, setLook] = useState<Look>(place.look ?? kPlainLook);
   const exporting = useExport(connection); // goes on while another tab or session is looked at
   const turned = useRef<string | null>(null); // camera to which a hand has turned the view, until another one is chosen
+  const [hasExpertLine, showExpertLine] = useState(true); // on the trainee's organ
   const newest = useRef(look);
   newest.current = look;
   const [legend, setLegend] = useState<Legend | null>(null);
@@ -137,6 +139,7 @@ export function Review({ connection, listing, place, onPlace }: {
   const size = canvas.current && player ? sizeOf(canvas.current, player.tracks.size) : "";
   useEffect(() => {
     if (!player || !first) return;
+    player.hasExpertLine = hasExpertLine;
     player.see(look, size, (seen, as) => {
       setError(null);
       setLegend(seen.title ? seen : null);
@@ -144,7 +147,7 @@ export function Review({ connection, listing, place, onPlace }: {
       if (turned.current === null && as.camera === newest.current.camera) player.viewer.look(seen.camera);
       setVersion((v) => v + 1); // what an export sees
     }).catch(setError);
-  }, [player, first, second, look, size]);
+  }, [player, first, second, look, size, hasExpertLine]);
   useEffect(() => {
     if (!player || !first) return;
     const { viewer } = player;
@@ -249,9 +252,14 @@ export function Review({ connection, listing, place, onPlace }: {
           </div>
         )}
         {first && legend && <LegendBar legend={legend} />}
+        {second && <ExpertLegend marks={second.scene.expert} />}
         {first && (
           <div class="look-bar">
-            <LookFields look={look} onLook={chooseLook} onOtherSide={otherSide} view={first.session.view} />
+            <LookFields look={look} onLook={chooseLook} onOtherSide={otherSide} view={first.session.view}>
+              {second && !player!.otherScene && (
+                <label><input type="checkbox" checked={hasExpertLine} onChange={(e) => showExpertLine(e.currentTarget.checked)} /> expert's line</label>
+              )}
+            </LookFields>
           </div>
         )}
         {player?.isDrawing && !error && <p class="busy drawing" role="status">drawing: {lookText(player.look)} …</p>}

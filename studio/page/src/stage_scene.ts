@@ -1,6 +1,7 @@
 import * as three from "three";
-import { type Frame, type HandFrame, type OrganSpheres, readWaitingFrame, type SceneView, type Shapes, type Spheres, type ToolShape, type Triangles, type Vector, type WaitingFrame } from "./protocol";
+import { type ExpertMarks, type Frame, type HandFrame, type OrganSpheres, readWaitingFrame, type SceneView, type Shapes, type Spheres, type ToolShape, type Triangles, type Vector, type WaitingFrame } from "./protocol";
 import type { OrganPose } from "./items";
+import { ExpertLine } from "./expert_line";
 import { OrganMesh, organMaterials } from "./organ_mesh";
 import type { Fall, ToolShadow } from "./tool_shadow";
 
@@ -33,6 +34,9 @@ export class StageScene {
   organSpheres: OrganSpheres[] = [];
   private readonly arrows = [makeArrow(), makeArrow()]; // of each hand
   private ghost: three.Mesh | null = null;
+  expert: ExpertMarks | null = null; // on the organs of the frame that is drawn
+  private nextExpert: ExpertMarks | null = null; // of a frame that waits
+  private expertLine: ExpertLine | null = null;
 
   /** `shadow`: that falls on its organs. */
   constructor(readonly view: SceneView, shadow?: ToolShadow) {
@@ -121,6 +125,17 @@ export class StageScene {
     this.show(this.shown);
   }
 
+  /** An expert's cut on the organs of a frame that follows. */
+  setExpert(marks: ExpertMarks): void {
+    this.nextExpert = marks;
+  }
+
+  private showExpert(marks: ExpertMarks | null): void {
+    this.expert = marks;
+    if (marks && !this.expertLine) this.scene.add((this.expertLine = new ExpertLine()).group);
+    this.expertLine?.show(marks);
+  }
+
   /** Takes the newest frame, which is read when it is drawn: a slow browser leaves out those in between. */
   wait(frame: WaitingFrame): void {
     this.waiting = frame;
@@ -135,6 +150,7 @@ export class StageScene {
     if (frame.topology !== this.topology || !frame.organs.every((positions, i) => this.organs[i]?.fits(positions))) return false; // of triangles that are not here
     this.frame = frame;
     frame.organs.forEach((positions, i) => this.organs[i]?.update(positions));
+    this.showExpert(this.nextExpert?.request === frame.request ? this.nextExpert : null);
     this.tools.forEach((tool, i) => {
       const holding = i === frame.second?.tool ? frame.second : frame; // both hands never hold the same tool
       tool.visible = i === holding.tool;
@@ -162,8 +178,9 @@ export class StageScene {
     for (const organ of this.organs) organ.drawFacing(viewer);
   }
 
-  /** Who looks along a tool sees the tissue through it. */
+  /** Who looks along a tool sees the tissue through it, and lines that lie on the tissue whole. */
   clearTools(viewer: three.Vector3): void {
+    this.expertLine?.comeNearer(viewer);
     for (const tool of this.tools) {
       if (!tool.visible) continue;
       tool.updateMatrixWorld();
@@ -205,6 +222,7 @@ export class StageScene {
   }
 
   dispose(): void {
+    this.expertLine?.dispose();
     for (const organ of this.organs) organ.dispose();
     for (const material of this.materials.flat()) material.dispose();
     for (const mesh of [...this.tools, ...this.obstacles, ...this.spheres]) mesh.geometry.dispose();

@@ -1,10 +1,10 @@
 import * as three from "three";
-import type { Binary, Connection } from "./connection";
+import type { Connection } from "./connection";
 import { readGamepad } from "./gamepad";
 import { aboveOrgans, kClearance } from "./items";
 import { Pace } from "./pace";
 import { orientationOf } from "./pose";
-import type { BegunTraining, CameraView, EndedTraining, Frame, HandFrame, Motion, SceneView, Vector } from "./protocol";
+import type { BegunTraining, Binary, CameraView, EndedTraining, Frame, HandFrame, Motion, SceneView, Vector } from "./protocol";
 import { StageScene } from "./stage_scene";
 import { Fall, ToolShadow } from "./tool_shadow";
 import { firstCamera, type Viewer } from "./viewer";

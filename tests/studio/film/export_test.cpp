@@ -233,7 +233,8 @@ TEST_F(Export, BesideSaysThatASessionHasEnded) {
   const render_test::GlyphReader reader(640, 720);
   EXPECT_EQ(reader.read_after(half, "ended"), "0.600 s");
   EXPECT_EQ(reader.read_after(half, "time"), "");
-  EXPECT_EQ(reader.read_after(half, "session"), "short");
+  EXPECT_EQ(reader.read_after(half, "trainee"), "short");
+  EXPECT_EQ(reader.read_after(half_of(picture("both", 3), 0), "expert"), "press");
 }
 
 TEST_F(Export, BesideShowsTwoSessionsInStep) {

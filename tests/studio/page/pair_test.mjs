@@ -152,6 +152,52 @@ step("two sessions beside each other, compared", async () => {
   await picture(page, "review-compare");
 });
 
+step("the expert's cut is on the trainee's organ, and what was cut elsewhere is marked", async () => {
+  const legend = page.locator(".expert-legend li"), chosen = page.locator('.look-bar label:has-text("expert\'s line") input');
+  /** Pixels of each half, without what is written over it: of the line, and of the marks. */
+  const count = async () => {
+    const { width, height, data } = pixelsOf(await page.locator(".view > canvas").screenshot());
+    const halves = [{ line: 0, strays: 0 }, { line: 0, strays: 0 }];
+    for (let i = 0; i < data.length; i += 4) {
+      const y = Math.floor(i / 4 / width), half = halves[Number((i / 4) % width >= width / 2)];
+      if (y < 60 || y > height - 60) continue;
+      half.line += data[i + 2] > data[i] + 50;
+      half.strays += data[i] > 200 && data[i + 1] > 140 && data[i + 1] < 200 && data[i + 2] < 140;
+    }
+    return halves;
+  };
+  const until = async (isSo) => {
+    let halves = await count();
+    for (const began = Date.now(); !isSo(halves) && Date.now() < began + 20_000; ) halves = await count(); // a loaded machine draws late
+    assert.ok(isSo(halves), JSON.stringify(halves));
+    return halves;
+  };
+  await page.locator("#panel .jumps button:has-text('cut where the expert did not')").last().click();
+  await page.waitForFunction(() => document.querySelectorAll(".expert-legend li").length === 2);
+  assert.deepEqual(await legend.allInnerTexts(), ["the expert's cut", "cut where the expert did not"]);
+  const [, there] = await until(([expert, trainee]) => expert.line === 0 && trainee.line > 40 && trainee.strays > 10);
+  await picture(page, "review-expert-line");
+  assert.deepEqual(await seriousFindings(page), []);
+  // Drawn by the program it is there too.
+  const view = page.locator(".look-bar label:has-text('view') select");
+  await view.selectOption("both");
+  await page.waitForSelector(".drawings canvas:not([hidden]) + canvas:not([hidden])");
+  await until(([expert, trainee]) => expert.line === 0 && trainee.line > 40);
+  await view.selectOption("surface");
+  // Before the trainee cuts, nothing is cut elsewhere.
+  await page.locator(".view > canvas").focus();
+  await page.keyboard.press("Home");
+  await page.waitForFunction(() => document.querySelectorAll(".expert-legend li").length === 1);
+  assert.deepEqual(await legend.allInnerTexts(), ["the expert's cut"]);
+  await until(([, { line, strays }]) => line > 40 && strays < there.strays);
+  await chosen.uncheck();
+  await page.waitForFunction(() => !document.querySelector(".expert-legend"));
+  await until(([, { line }]) => line === 0);
+  await chosen.check();
+  await page.waitForSelector(".expert-legend");
+  await until(([, { line }]) => line > 40);
+});
+
 step("what chooses a panel stays while it is scrolled", async () => {
   const tabs = page.locator(".tabs"), before = await tabs.boundingBox();
   const far = await page.locator("#panel").evaluate((panel) => {
@@ -496,6 +542,22 @@ step("an export is the one that the shown command makes, and can be cancelled", 
   await field("caption").fill("too steep");
   await makesWhatItShows("both", ["--align cut", "--overlay small", "--fps 10", "--caption 'too steep'", `--beside ${kClumsy}`]);
   await picture(page, "review-export");
+  // The expert's tool in the trainee's session, in the words of the command, whose times are by the trainee's clock.
+  const ghost = page.locator(`#panel label:has-text("ghost: ${kExpert}")`), said = (await ghost.innerText()).replace(/^.*?, /, "");
+  assert.ok(ctpm(folder, "export", "--help").out.replace(/\s+/g, " ").includes(said), said);
+  await field("caption").fill("");
+  await ghost.click();
+  const ghostName = `${kClumsy.replace(".ctpm", "")}-ghost-${kExpert.replace(".ctpm", "")}.mp4`;
+  await page.waitForFunction((name) => document.querySelector("#panel .field input").value === name, ghostName);
+  assert.ok(await page.locator("#panel .hint:has-text(\"by the trainee's clock\")").count());
+  await page.locator('.look-bar label:has-text("expert\'s line") input').uncheck();
+  await field("file in the folder").fill("ghost.avi");
+  await field("from [s]").fill("2.2");
+  await field("to [s]").fill("2.4");
+  await makesWhatItShows("ghost", [`export ${kClumsy} -o ghost.avi --ghost ${kExpert} --align cut --no-expert-line`]);
+  await picture(page, "review-export-ghost");
+  await ghost.click();
+  await page.locator('.look-bar label:has-text("expert\'s line") input').check();
   // One of them.
   await page.click("#tab-compare");
   await page.locator("#panel select").selectOption("");

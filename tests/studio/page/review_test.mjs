@@ -380,6 +380,7 @@ step("what cannot be read is left out and said, and the page goes on", async () 
     "of a triangle without vertices": [1, (bytes, u32) => (u32[8] = u32[4])],
     "of more triangles than follow": [1, (bytes, u32) => (u32[6] = 4e9)],
     "of a tool's vertices that do not follow": [3, (bytes, u32) => (u32[3] = 4e9)],
+    "of more of an expert's line than follows": [2, () => Uint32Array.of(6, 0, 1, 2, 0, 0, 0, 0, 0, 0, 0).buffer],
   };
   const comes = (kind, spoil) => page.evaluate(`(() => {
     const bytes = globalThis.came[${kind}].slice(0), made = (${spoil})(bytes, new Uint32Array(bytes));

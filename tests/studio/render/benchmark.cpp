@@ -8,6 +8,7 @@
 #include "studio/film/bounded_queue.h"
 #include "studio/film/pipeline.h"
 #include "studio/render/cut_surface.h"
+#include "studio/render/expert_cut.h"
 #include "studio/render/overlay.h"
 #include "studio/video/video_writer.h"
 #include "tests/studio/render/scene.h"
@@ -82,9 +83,30 @@ std::vector<State> growing_cut(const Bench& bench) {
   return growing;
 }
 
+/// What another session's cut on the organ costs.
+void give_expert(Bench& bench) {
+  bench.options.expert =
+      std::make_shared<const render::ExpertCut>(bench.scene->model, cut_along_y(bench.scene->model, 0.01, 0.02, 0));
+}
+
+void picture_with_expert(benchmark::State& run) {
+  Bench bench;
+  if (run.range(0)) give_expert(bench);
+  bench.renderer->draw(bench.severed, bench.options);
+  for (auto _ : run) benchmark::DoNotOptimize(bench.renderer->draw(bench.severed, bench.options).rgb.data());
+}
+BENCHMARK(picture_with_expert)
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->ArgName("expert");
+
 /// The split and the wall follow the blade from picture to picture.
 void picture_while_cutting(benchmark::State& run) {
   Bench bench;
+  if (run.range(0)) give_expert(bench);
   const std::vector<State> growing = growing_cut(bench);
   std::size_t next = growing.size();
   for (auto _ : run) {
@@ -96,7 +118,13 @@ void picture_while_cutting(benchmark::State& run) {
     benchmark::DoNotOptimize(bench.renderer->draw(growing[next++], bench.options).rgb.data());
   }
 }
-BENCHMARK(picture_while_cutting)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(picture_while_cutting)
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->ArgName("expert");
 
 /// The same in a film, where the thread that replays the session makes the cut's surface of the next pictures.
 void picture_of_a_film_while_cutting(benchmark::State& run) {

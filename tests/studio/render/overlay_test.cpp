@@ -41,6 +41,8 @@ TEST(Overlay, TextsNeitherOverlapNorLeaveThePicture) {
   two_hands.second = render::HandLoad{12345.678, 0.0134, true}, two_hands.slip = 99.9;
   render::OverlayData blade = full_data();
   blade.hand.is_blade = true, blade.hand.depth = 0.01855, blade.slip = 12.3;
+  blade.role = "trainee", blade.ghost = "kidney-cut-expert";
+  blade.marks = {{{0.5, 0.75, 1}, "the expert's cut", true}, {{1, 0.7, 0.36}, "cut where the expert did not"}};
   for (const auto& [width, height] :
        {std::pair{1280, 720}, {640, 360}, {1920, 1080}, {1080, 1080}, {854, 480}, {640, 720}, {360, 640}})
     for (const render::OverlayData& data : {full_data(), long_winded, two_hands, blade}) {
@@ -252,6 +254,48 @@ TEST(Overlay, LongNamesOfAPairCanBeToldApart) {
     const std::string long_name = shown("expert" + std::string(200, 'W') + "second", width);
     EXPECT_TRUE(long_name.starts_with("exp") && long_name.ends_with("nd")) << long_name;
   }
+}
+
+TEST(Overlay, WhoseHalfItIsStaysWhereAToolIsAndMarksAreNamed) {
+  render::OverlayData data = full_data();
+  data.role = "trainee", data.session = "ana-" + std::string(60, 'W') + "-second-try";
+  data.marks = {{{0.5, 0.75, 1}, "the expert's cut", true}, {{1, 0.7, 0.36}, "cut where the expert did not"}};
+  render::Overlay half(640, 720);
+  render::Frame alone = render::blank_frame(640, 720, 90, 60, 50), under = alone;
+  half.draw(alone, data);
+  data.tools = {{60, 40, 1}, {60, 120, 1}};  // a handle in the corner of the names
+  half.draw(under, data);
+  const auto differs = [&](const std::string& words) {
+    for (const render::PlacedText& text : half.layout(data)) {
+      if (!text.text.starts_with(words)) continue;
+      for (int y = text.box.y; y < text.box.y + text.box.height; ++y)
+        for (int x = 3 * text.box.x; x < 3 * (text.box.x + text.box.width); ++x)
+          if (const auto i = std::size_t(y * 640 * 3 + x); alone.rgb[i] != under.rgb[i]) return true;
+      return false;
+    }
+    ADD_FAILURE() << words << " is not there";
+    return false;
+  };
+  EXPECT_FALSE(differs("trainee"));
+  EXPECT_FALSE(differs("ana-"));
+  EXPECT_TRUE(differs("the expert's cut")) << "panels that the tool is behind fade";
+  for (const render::PlacedText& text : half.layout(data))
+    if (text.text.starts_with("ana-")) {
+      EXPECT_TRUE(text.text.ends_with("try")) << text.text;
+    }
+  // A sample of each colour stands left of its words.
+  for (const render::MarkMeaning& mark : data.marks) {
+    int found = 0;
+    for (const render::PlacedText& text : half.layout(data))
+      for (int x = text.box.x - 40; text.text == mark.text && x < text.box.x; ++x) {
+        const std::uint8_t* p = &alone.rgb[std::size_t((text.box.y + text.box.height / 3) * 640 + x) * 3];
+        found += std::abs(p[0] - 255 * mark.colour[0]) < 2 && std::abs(p[2] - 255 * mark.colour[2]) < 2;
+      }
+    EXPECT_GT(found, 8) << mark.text;
+  }
+  data.level = render::OverlayLevel::none;
+  EXPECT_TRUE(
+      std::ranges::none_of(half.layout(data), [](const auto& text) { return text.text == "the expert's cut"; }));
 }
 
 TEST(Overlay, ShowsOnlyWhatThereIs) {

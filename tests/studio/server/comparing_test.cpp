@@ -4,10 +4,15 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <vector>
 
+#include "core/contact/drawn_surfaces.h"
+#include "recordings/replay.h"
 #include "recordings/session_reader.h"
 #include "studio/compare/compare_files.h"
+#include "studio/film/expert_cut_of.h"
+#include "studio/render/cut_surface.h"
 #include "tests/studio/server/reviewing.h"
 #include "tests/studio/server/serving.h"
 
@@ -18,6 +23,7 @@ namespace fs = std::filesystem;
 using testing::kCut, testing::kPress;
 using testing::Serving;
 using testing::SocketClient;
+using testing::value_at;
 
 class Comparing : public testing::Reviewing {
  protected:
@@ -124,6 +130,61 @@ TEST_F(Comparing, AComparisonKnowsWhatWasVerifiedUntilTheFileChanges) {
   std::ofstream(file("other.ctpm"), std::ios::app) << std::string(4096, '\0');
   fs::last_write_time(file("other.ctpm"), time);
   EXPECT_EQ(doubts(), Names{"other.ctpm"});
+}
+
+TEST_F(Comparing, AnExpertsCutIsOnTheOrganOfAnotherSessionOfItsScene) {
+  const std::string clumsy = "kidney-cut-clumsy.ctpm";
+  fs::copy(fs::path(CTPM_SHIPPED_SESSIONS) / clumsy, file(clumsy));
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  client.call("session.open", {{"path", clumsy}, {"stage", 0}});
+  auto reader = *recordings::SessionReader::open(file(clumsy));
+  auto expert = *recordings::SessionReader::open(file(kCut));
+  const auto cut = film::expert_cut_of(expert);
+  ASSERT_TRUE(cut);
+  const std::int64_t tick = reader.tick_count();
+  std::uint32_t number = 0;
+  // What comes between the call and its replayed frame: of each kind the last message.
+  const auto shown = [&](nlohmann::json request) {
+    request["stage"] = 0;
+    const nlohmann::json answer = client.call("session.draw", request);
+    EXPECT_TRUE(answer.contains("result")) << answer;
+    client.send({{"show", {{"stage", 0}, {"tick", tick}, {"request", ++number}}}});
+    for (std::map<std::uint32_t, std::string> last;;) {
+      const SocketClient::Message message = client.receive();
+      if (message.is_text) continue;
+      last[value_at<std::uint32_t>(message.bytes, 0)] = message.bytes;
+      if (value_at<std::uint32_t>(message.bytes, 0) != 2 || SocketClient::is_glimpse(message.bytes)) continue;
+      if (value_at<std::uint32_t>(message.bytes, 16) == number) return last;
+    }
+  };
+  EXPECT_FALSE(shown({}).contains(6)) << "nobody asked for it";
+  EXPECT_FALSE(shown({{"expert", kPress}}).contains(6)) << "of another scene";
+  const auto messages = shown({{"expert", kCut}, {"size", "320x180"}, {"view", "both"}});
+  ASSERT_TRUE(messages.contains(6));
+  const std::string& marks = messages.at(6);
+  EXPECT_EQ(value_at<std::uint32_t>(marks, 8), number);
+  // They are those of the function that films call.
+  auto cursor = recordings::ReplayCursor::create(reader);
+  ASSERT_TRUE(cursor && cursor->seek(tick));
+  const Model& model = reader.start().model;
+  render::CutSurface surface(model, 0);
+  surface.update(cursor->state());
+  std::vector<Vec3> vertex;
+  contact::DrawnSurfaces(model).place(0, surface.surface(), cursor->state(), vertex);
+  const render::DrawnOrgan organ{&surface.surface(), surface.outer_triangle_count(), &vertex};
+  render::ExpertMarker marker;
+  const render::ExpertMarks same = marker.place(model, *cut, {&organ, 1}, 0, cursor->state());
+  ASSERT_GT(same.line.size(), 20u);
+  ASSERT_GT(same.strays.size(), 5u);
+  ASSERT_EQ(value_at<std::uint32_t>(marks, 12), same.line.size());
+  ASSERT_EQ(value_at<std::uint32_t>(marks, 16), same.strays.size());
+  ASSERT_EQ(marks.size(), 20 + 24 * same.line.size() + 12 * same.strays.size());
+  for (std::size_t i = 0; i < same.line.size(); ++i)
+    EXPECT_FLOAT_EQ(value_at<float>(marks, 20 + 24 * i), float(same.line[i][0].x));
+  EXPECT_FLOAT_EQ(value_at<float>(marks, marks.size() - 4), float(same.strays.back().z));
+  // The program's own drawing has them too.
+  EXPECT_NE(messages.at(5).substr(20), shown({{"size", "320x180"}, {"view", "both"}}).at(5).substr(20));
 }
 
 TEST_F(Comparing, SessionsOfDifferentScenesAreToldApart) {

@@ -78,6 +78,8 @@ TEST(Protocol, NoCallReachesAFileOutsideOfTheFolder) {
       {"session.export", "path", ".ctpm", {{"output", "film.avi"}, {"to_s", 0.1}}},
       {"session.export", "output", ".avi", {{"path", "own.ctpm"}, {"to_s", 0.1}}},
       {"session.export", "beside", ".ctpm", {{"path", "own.ctpm"}, {"output", "film.avi"}, {"to_s", 0.1}}},
+      {"session.export", "ghost", ".ctpm", {{"path", "own.ctpm"}, {"output", "film.avi"}, {"to_s", 0.1}}},
+      {"session.draw", "expert", ".ctpm", {{"stage", 0}}},
       {"notes.read", "path", ".ctpm", none},
       {"notes.write", "path", ".ctpm", {{"revision", "none"}, {"notes", nlohmann::json::array()}}},
       {"scene.import", "mesh", ".obj", {{"scene", "new.json"}, {"radius_m", 0.006}}},
