@@ -16,7 +16,7 @@ namespace {
 constexpr double kCell = 4e-3;        // in which triangles and places are looked for [m]
 constexpr double kLeastPiece = 1e-6;  // of a line [m]
 constexpr double kNear = 1.5e-3;      // how far the outside of a cut organ is from its own surface at most [m]
-constexpr double kAside = 0.15e-3;    // a cut so near to the expert's leaves the line whole, on one of its lips [m]
+constexpr double kAside = 0.3e-3;     // a cut so near to the expert's leaves the line whole, on one of its lips [m]
 constexpr double kTorn = 2,
                  kTornBy = 1e-3;  // a part of the line that is longer than that many times and [m] spans a wound
 
