@@ -176,8 +176,8 @@ TEST_F(Reviewing, AGlimpseIsAtTheRecordedPoseAndTheReplayFollows) {
   }
   ASSERT_EQ(glimpse.size(), replayed.size());
   EXPECT_NE(glimpse.substr(kFrameHead), replayed.substr(kFrameHead));
-  // The moment was kept: asked again, it is replayed at once. Of a moment that is not kept a glimpse always comes first;
-  // of a kept one it comes only where other programs hold up its picture, so that one of several is enough.
+  // The moment was kept: asked again, it is replayed at once. Of a moment that is not kept a glimpse always comes
+  // first; of a kept one it comes only where other programs hold up its picture, so that one of several is enough.
   bool was_kept = false;
   for (std::uint32_t request = 2; request < 40 && !was_kept; request += 2) {
     frame_of(client, 3000, request);
