@@ -217,9 +217,9 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
             {phase === "loading" && <button type="button" onClick={() => loading.current?.abort()}>Cancel</button>}
           </Section>
         )}
-        {(phase === "running" || phase === "ended") && <Task task={view?.task ?? ""} />}
         {phase === "running" && trainer && (
           <>
+            <Task task={view?.task ?? ""} />
             <Now trainer={trainer} note={note} />
             <Section title="Expert">
               <ExpertChoice listing={listing.sessions.filter(({ path }) => path !== output)} scenes={scenes} sceneKey={sceneKey} expert={expert} onExpert={setChosenExpert} use="shown as a ghost" />
