@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
-import { ctpm, ctpmBeside, isWhole, leave, makeFolder, moveMouse, openStudio, outOfReach, paths, picture, pixelsOf, reading, seriousFindings, step, takeUp } from "./browser.mjs";
+import { ctpm, ctpmBeside, isWhole, leave, makeFolder, moveMouse, openStudio, outOfReach, paths, picture, pixelsOf, rareStep, reading, seriousFindings, step, takeUp } from "./browser.mjs";
 
 let folder, studio, page;
 const kScene = "kidney.json";
@@ -132,7 +132,7 @@ step("spheres are drawn in the colours of their layers, and those that never mov
   assert.ok(outer > 3 * (inner - none), "the inner layer is behind the outer one");
 });
 
-step("the scatter in full is that of the command", async () => {
+rareStep("the scatter in full is that of the command", async () => {
   await write((await text()).replace('"radius_mm": 4, "gap_mm": 4', '"radius_mm": 6, "gap_mm": 6'));
   await save();
   await settled();

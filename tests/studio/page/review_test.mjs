@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
-import { ctpm, ctpmBeside, keepBack, leave, makeFolder, openStudio, overflow, paths, picture, pixelsOf, reading, seriousFindings, step, until } from "./browser.mjs";
+import { ctpm, ctpmBeside, keepBack, leave, makeFolder, openStudio, overflow, paths, picture, pixelsOf, rareStep, reading, seriousFindings, step, until } from "./browser.mjs";
 
 const kExpert = "kidney-cut-expert.ctpm";
 let folder, studio, page, expert;
@@ -468,7 +468,7 @@ step("who looks into another room finds the session as it was, at its moment", a
   await page.waitForSelector(".review .clock");
 });
 
-step("of a session that cannot be read the reason stays until another one is chosen, and nothing of the one before", async () => {
+rareStep("of a session that cannot be read the reason stays until another one is chosen, and nothing of the one before", async () => {
   writeFileSync(join(folder, "no-session.ctpm"), "a letter");
   for (const room of ["Author", "Review"]) await page.click(`header nav button:has-text('${room}')`);
   const choose = (name) => page.click(`.list button:has-text('${name}')`), problem = page.locator(".view .problems"), canvas = ".drawings canvas";
