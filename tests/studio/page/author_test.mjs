@@ -168,8 +168,9 @@ step("the schema completes keys and values", async () => {
   await page.keyboard.type('"loa', { delay: 30 });
   // It comes by itself, but on a busy machine another change may close it: then it is asked for.
   const loads = page.locator(".cm-tooltip-autocomplete li:has-text('loads')");
-  await loads.waitFor({ timeout: 5000 }).catch(() => page.keyboard.press("Control+Space"));
-  await loads.waitFor();
+  for (let i = 0; i < 6 && !(await loads.isVisible()); ++i) await loads.waitFor({ timeout: 5000 }).catch(() => page.keyboard.press("Control+Space"));
+  const around = async () => `${await page.evaluate(() => document.activeElement?.className)} has the focus; the text begins with ${(await text()).slice(0, 200)}`;
+  assert.ok(await loads.isVisible(), await around());
   await picture(page, "author-completion");
   await page.waitForTimeout(100);
   await page.keyboard.press("Enter");

@@ -89,19 +89,18 @@ void give_expert(Bench& bench) {
       std::make_shared<const render::ExpertCut>(bench.scene->model, cut_along_y(bench.scene->model, 0.01, 0.02, 0));
 }
 
+void without_and_with_expert(benchmark::internal::Benchmark* picture) {
+  picture->Arg(0)->Arg(1)->ArgName("expert");
+  picture->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+}
+
 void picture_with_expert(benchmark::State& run) {
   Bench bench;
   if (run.range(0)) give_expert(bench);
   bench.renderer->draw(bench.severed, bench.options);
   for (auto _ : run) benchmark::DoNotOptimize(bench.renderer->draw(bench.severed, bench.options).rgb.data());
 }
-BENCHMARK(picture_with_expert)
-    ->Arg(0)
-    ->Arg(1)
-    ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime()
-    ->ArgName("expert");
+BENCHMARK(picture_with_expert)->Apply(without_and_with_expert);
 
 /// The split and the wall follow the blade from picture to picture.
 void picture_while_cutting(benchmark::State& run) {
@@ -118,13 +117,7 @@ void picture_while_cutting(benchmark::State& run) {
     benchmark::DoNotOptimize(bench.renderer->draw(growing[next++], bench.options).rgb.data());
   }
 }
-BENCHMARK(picture_while_cutting)
-    ->Arg(0)
-    ->Arg(1)
-    ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime()
-    ->ArgName("expert");
+BENCHMARK(picture_while_cutting)->Apply(without_and_with_expert);
 
 /// The same in a film, where the thread that replays the session makes the cut's surface of the next pictures.
 void picture_of_a_film_while_cutting(benchmark::State& run) {

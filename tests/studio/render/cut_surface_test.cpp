@@ -220,13 +220,13 @@ std::vector<NamedWays> crossing_cuts() {
 }
 
 TEST(CutSurface, IsWatertightWhateverTheCut) {
-  EXPECT_GT(watertight_cuts(make_blob_scene()->model, cuts_of_all_kinds()), 8);
+  EXPECT_GT(watertight_cuts(make_blob_scene()->model, cuts_of_all_kinds()), 9);
   EXPECT_EQ(watertight_cuts(make_scene(lens_of_one_sheet())->model, crossing_cuts()), 1);
 }
 
 TEST(CutSurface, SlowIsWatertightWhateverTheCutOfASheetAndOfSmallSpheres) {
-  for (const auto& scene : {make_scene(lens_of_one_sheet()), make_blob_scene(0.0025, 50)})
-    EXPECT_GT(watertight_cuts(scene->model, cuts_of_all_kinds()), 8);
+  EXPECT_GT(watertight_cuts(make_scene(lens_of_one_sheet())->model, cuts_of_all_kinds()), 7);
+  EXPECT_GT(watertight_cuts(make_blob_scene(0.0025, 50)->model, cuts_of_all_kinds()), 8);
 }
 
 /// Cuts right through at places, each upright and leaning.
