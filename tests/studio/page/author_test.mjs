@@ -162,15 +162,20 @@ step("errors in the text are those of check, at their places", async () => {
 
 step("the schema completes keys and values", async () => {
   const good = onDisk();
-  await page.locator(".cm-line:has-text('\"version\"')").click();
-  await page.keyboard.press("End");
-  await page.keyboard.press("Enter");
-  await page.keyboard.type('"loa', { delay: 30 });
-  // It comes by itself, but on a busy machine another change may close it: then it is asked for.
   const loads = page.locator(".cm-tooltip-autocomplete li:has-text('loads')");
-  for (let i = 0; i < 6 && !(await loads.isVisible()); ++i) await loads.waitFor({ timeout: 5000 }).catch(() => page.keyboard.press("Control+Space"));
-  const around = async () => `${await page.evaluate(() => document.activeElement?.className)} has the focus; the text begins with ${(await text()).slice(0, 200)}`;
-  assert.ok(await loads.isVisible(), await around());
+  const inEditor = () => page.evaluate(() => document.activeElement?.shadowRoot?.activeElement?.className ?? document.activeElement?.className);
+  for (let i = 0; i < 6 && !(await loads.isVisible()); ++i) {
+    if (!(await text()).includes('"loa')) {
+      if (i > 0) console.log(`author: what was typed is not there; ${await inEditor()} has the focus`);
+      await page.locator(".cm-line:has-text('\"version\"')").click();
+      await page.keyboard.press("End");
+      await page.keyboard.press("Enter");
+      await page.keyboard.type('"loa', { delay: 30 });
+    }
+    // It comes by itself, but on a busy machine another change may close it: then it is asked for.
+    await loads.waitFor({ timeout: 5000 }).catch(() => page.keyboard.press("Control+Space"));
+  }
+  assert.ok(await loads.isVisible(), `${await inEditor()} has the focus; the text begins with ${(await text()).slice(0, 200)}`);
   await picture(page, "author-completion");
   await page.waitForTimeout(100);
   await page.keyboard.press("Enter");
