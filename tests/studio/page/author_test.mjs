@@ -163,10 +163,12 @@ step("errors in the text are those of check, at their places", async () => {
 step("the schema completes keys and values", async () => {
   const good = onDisk();
   const loads = page.locator(".cm-tooltip-autocomplete li:has-text('loads')");
-  const inEditor = () => page.evaluate(() => document.activeElement?.shadowRoot?.activeElement?.className ?? document.activeElement?.className);
+  await settled();
   for (let i = 0; i < 6 && !(await loads.isVisible()); ++i) {
-    if (!(await text()).includes('"loa')) {
-      if (i > 0) console.log(`author: what was typed is not there; ${await inEditor()} has the focus`);
+    // Where the list of problems shrinks meanwhile, the lines move below the pointer, and another one is clicked.
+    if (!/"version": 1,\s*"loa/.test(await text())) {
+      if (i > 0) console.log(`author: another line was clicked: ${(await text()).split("\n").find((line) => line.includes('"loa'))}`);
+      while (await button("Undo").isEnabled()) await button("Undo").click();
       await page.locator(".cm-line:has-text('\"version\"')").click();
       await page.keyboard.press("End");
       await page.keyboard.press("Enter");
@@ -175,7 +177,7 @@ step("the schema completes keys and values", async () => {
     // It comes by itself, but on a busy machine another change may close it: then it is asked for.
     await loads.waitFor({ timeout: 5000 }).catch(() => page.keyboard.press("Control+Space"));
   }
-  assert.ok(await loads.isVisible(), `${await inEditor()} has the focus; the text begins with ${(await text()).slice(0, 200)}`);
+  assert.ok(await loads.isVisible(), await text());
   await picture(page, "author-completion");
   await page.waitForTimeout(100);
   await page.keyboard.press("Enter");
