@@ -164,6 +164,7 @@ step("the schema completes keys and values", async () => {
   const good = onDisk();
   const loads = page.locator(".cm-tooltip-autocomplete li:has-text('loads')");
   await settled();
+  // By keys: a click within the frame that scrolled to the top, as no hand makes it, goes where the editor was scrolled to before.
   await page.locator(".cm-content").focus();
   await page.keyboard.press("Control+Home");
   for (const key of ["ArrowDown", "ArrowDown", "End", "Enter"]) await page.keyboard.press(key); // behind the version

@@ -75,16 +75,17 @@ TEST_F(TrainingTest, APageLeadsNoBallThroughAnOrgan) {
     const double depth_m = begun["result"]["gives_way"]["depth_m"];
     EXPECT_GE(depth_m, one.least_m);  // the kidney is 45 mm thick, the liver is damaged 12 mm deep
     EXPECT_LE(depth_m, one.most_m);
-    // It stands until ticks have begun; then 0.3 m/s down, right through, and it stands again.
+    const double before = testing::stand_until_ticks(client, {one.x, one.y, one.top + 0.01});
+    // 0.3 m/s down, right through, and it stands again.
     const auto begin = std::chrono::steady_clock::now();
-    for (int i = 0; i < 250; ++i) {
+    for (int i = 0; i < 150; ++i) {
       std::this_thread::sleep_until(begin + std::chrono::milliseconds(8 * i));
-      const double z = one.top + 0.01 - std::min(0.3 * 0.008 * std::max(0, i - 100), one.top);
+      const double z = one.top + 0.01 - std::min(0.3 * 0.008 * i, one.top);
       client.send({{"hand",
                     {{"position", {one.x, one.y, z}},
                      {"orientation", {1, 0, 0, 0}},
                      {"buttons", 1},
-                     {"time_s", 100 + 0.008 * i}}}});
+                     {"time_s", before + 0.008 * (i + 1)}}}});
     }
     client.send({{"id", 99}, {"call", "train.end"}, {"params", nlohmann::json::object()}});
     const nlohmann::json ended = event_of(client, "train_ended");

@@ -29,6 +29,20 @@ class TrainingTest : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+/// Holds the ball at a place until ticks are done with it there, however long a slow machine takes to begin with them.
+/// Returns the time of the last pose.
+inline double stand_until_ticks(SocketClient& client, const nlohmann::json& position) {
+  for (double time = 100;; time += 0.008) {
+    client.send({{"hand", {{"position", position}, {"orientation", {1, 0, 0, 0}}, {"buttons", 1}, {"time_s", time}}}});
+    std::this_thread::sleep_for(std::chrono::milliseconds(8));
+    while (client.has_news()) {
+      const auto message = client.receive();
+      const bool is_frame = !message.is_text && value_at<std::uint32_t>(message.bytes, 0) == 2;
+      if (is_frame && value_at<double>(message.bytes, 32) > 0) return time;
+    }
+  }
+}
+
 /// Holds the ball for `ticks` of 8 ms on its way down onto the organ. The messages are sent `at_once` many together,
 /// each with the time at which a hand was there.
 inline void press(SocketClient& client, const nlohmann::json& view, int ticks, int at_once) {
