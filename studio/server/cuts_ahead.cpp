@@ -7,7 +7,8 @@
 
 #include "recordings/session_reader.h"
 #include "studio/server/cut_key.h"
-#include "studio/server/urgency.h"
+#include "studio/server/idle_pause.h"
+#include "studio/session/urgency.h"
 
 namespace ctpm::server {
 
@@ -57,7 +58,7 @@ CutsAhead::CutsAhead(const std::string& file, const Model& model, std::uint32_t 
     : cuts_(std::move(cuts)) {
   if (!model.has_scalpel()) return;
   thread_ = std::thread([this, file, stage] {
-    become(Urgency::idle);
+    session::become(session::Urgency::idle);
     Result<recordings::SessionReader> reader = recordings::SessionReader::open(file);
     if (!reader) return;
     const Result<std::vector<std::int64_t>> keyframes = reader->keyframe_ticks();

@@ -8,7 +8,8 @@
 #include <cstdlib>
 
 #include "studio/server/cut_key.h"
-#include "studio/server/urgency.h"
+#include "studio/server/idle_pause.h"
+#include "studio/session/urgency.h"
 
 namespace ctpm::server {
 namespace {
@@ -194,7 +195,7 @@ void Moments::work() {
     while (rest_ == Rest::all && !ends_) std::this_thread::sleep_for(std::chrono::milliseconds(2));
     if (const Place place = before(keyframes_[i]); !place.second) (void)read(place, reader_);
   }
-  become(Urgency::idle);
+  session::become(session::Urgency::idle);
   Result<recordings::ReplayCursor> cursor = recordings::ReplayCursor::create(reader_);
   if (!cursor) return;
   for (std::size_t next; !ends_ && (next = next_interval()) < keyframes_.size();) fill(*cursor, next);

@@ -9,7 +9,7 @@
 #include "studio/output/option_name.h"
 #include "studio/server/http_connection.h"
 #include "studio/server/services.h"
-#include "studio/server/urgency.h"
+#include "studio/session/urgency.h"
 
 namespace ctpm::server {
 
@@ -139,7 +139,7 @@ std::string Server::listens_on() const {
 }
 
 void Server::run(const std::function<bool()>& should_stop) {
-  become(Urgency::tick);
+  session::become(session::Urgency::tick);
   impl_->accept_next();
   impl_->look(should_stop);
   impl_->services.network.run();

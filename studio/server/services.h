@@ -16,7 +16,7 @@
 #include "studio/server/limits.h"
 #include "studio/server/session_scenes.h"
 #include "studio/server/upload_list.h"
-#include "studio/server/urgency.h"
+#include "studio/session/urgency.h"
 
 namespace ctpm::server {
 
@@ -37,7 +37,7 @@ struct Services {
   std::size_t connections = 0;                           ///< open now; of the network's thread
   std::map<const void*, std::function<void()>> clients;  ///< closes each page; of the network's thread
   std::atomic<bool> ends{false};                         ///< the server is about to stop: calls must end
-  Precedence leading{8e-3};                              ///< while a page leads a hand; of the network's thread
+  session::Precedence leading{8e-3};                     ///< while a page leads a hand; of the network's thread
   bool is_led = false;                                   ///< since it was last looked at; of the network's thread
   boost::asio::io_context network{1};
   boost::asio::thread_pool pool{4};

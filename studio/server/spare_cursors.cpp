@@ -6,7 +6,8 @@
 #include <utility>
 
 #include "studio/server/cut_key.h"
-#include "studio/server/urgency.h"
+#include "studio/server/idle_pause.h"
+#include "studio/session/urgency.h"
 
 namespace ctpm::server {
 namespace {
@@ -73,7 +74,7 @@ SpareCursors::~SpareCursors() {
 }
 
 void SpareCursors::make() {
-  become(Urgency::idle);
+  session::become(session::Urgency::idle);
   Result<recordings::SessionReader> reader = recordings::SessionReader::open(reader_.path());
   if (!reader) return;
   const Result<std::vector<std::int64_t>> keyframes = reader->keyframe_ticks();

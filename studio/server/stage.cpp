@@ -7,9 +7,10 @@
 #include "studio/film/expert_cut_of.h"
 #include "studio/film/reel.h"
 #include "studio/server/glimpse.h"
+#include "studio/server/idle_pause.h"
 #include "studio/server/seeker.h"
 #include "studio/server/text.h"
-#include "studio/server/urgency.h"
+#include "studio/session/urgency.h"
 
 namespace ctpm::server {
 
@@ -224,7 +225,7 @@ Stage::Turn Stage::wait_for_turn() {
 }
 
 void Stage::replay() {
-  become(Urgency::picture);
+  session::become(session::Urgency::picture);
   Seeker seeker(reader_, *moments_, spares_);
   PictureMaker maker(reader_.start().model, number_, cuts_);
   Drawing drawing(reader_);
@@ -257,7 +258,7 @@ void Stage::end_glance() {
 
 /// Shows what is known of moments without a simulation. Damaged parts of the session and its beginning have no glimpse.
 void Stage::glance() {
-  become(Urgency::picture);
+  session::become(session::Urgency::picture);
   Result<recordings::SessionReader> reader = recordings::SessionReader::open(reader_.path());
   if (!reader) {  // it went away since it was opened: the replay says so
     while (next_glimpse()) end_glance();

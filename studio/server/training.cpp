@@ -9,13 +9,14 @@
 #include <vector>
 
 #include "studio/output/json_writer.h"
+#include "studio/server/idle_pause.h"
 #include "studio/server/picture.h"
 #include "studio/server/text.h"
-#include "studio/server/urgency.h"
 #include "studio/session/cut_measures.h"
 #include "studio/session/recent_times.h"
 #include "studio/session/record_session.h"
 #include "studio/session/unkept_session.h"
+#include "studio/session/urgency.h"
 
 namespace ctpm::server {
 namespace {
@@ -153,7 +154,7 @@ void Training::tell(const char* event, const std::string& text) {
 }
 
 void Training::tick() {
-  become(Urgency::tick);
+  session::become(session::Urgency::tick);
   const auto should_stop = [this] { return ends_.load(); };
   if (std::all_of(followed_.begin(), followed_.end(), [&](devices::DeviceSource* hand) {
         return hand->wait_for_first_pose(should_stop, [this](const std::string& why) { tell("train_waits", why); });
@@ -163,12 +164,11 @@ void Training::tick() {
     options.threads = session::threads_for(start_->model);
     options.should_stop = should_stop;
     session::RecentTimes times;
-    Precedence precedence(start_->model.tick);
     double began = INFINITY;  // a tick may begin late, never early
     options.watch = [&](const State& state, const recordings::TickRecord& record, const session::RunOutcome& so_far) {
       const double done = double(state.tick - 1) * start_->model.tick + record.slip;
       began = std::min(began, devices::device_clock() - record.tick_time - done);
-      times.add(record.tick_time), precedence.go_on();
+      times.add(record.tick_time);
       newest_.offer(state, record, so_far.late_ticks, times.p99());
     };
     options.note = [this](const std::string& text) { tell("train_notes", text); };

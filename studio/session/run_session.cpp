@@ -11,6 +11,7 @@
 #include "recordings/state_hash.h"
 #include "studio/session/event_watch.h"
 #include "studio/session/part_clock.h"
+#include "studio/session/urgency.h"
 
 namespace ctpm::session {
 namespace {
@@ -93,6 +94,8 @@ int threads_for(const Model& model) {
 
 RunOutcome run_session(const Model& model, State& state, sources::InputSource& source,
                        recordings::SessionWriter& writer, const RunOptions& options) {
+  std::optional<TickUrgency> urgency;
+  if (options.in_real_time) urgency.emplace(model.tick);
   PartClock parts;
   stepping::Stepper stepper(model, {.threads = options.threads, .watch = &parts});
   stepper.prepare();
@@ -131,6 +134,7 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
       ++outcome.late_ticks, outcome.late_by.add(recordings::late_cause(of, model.tick));
       writer.event({.tick = tick, .kind = recordings::EventKind::late_tick, .late = late, .parts = of});
     }
+    if (urgency) urgency->go_on();
     ++outcome.ticks, outcome.fallbacks += report.fallbacks > 0;
     outcome.fault = failure.look();
     if (!outcome.fault.empty()) break;

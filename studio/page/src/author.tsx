@@ -1,3 +1,4 @@
+import { redo, undo } from "@codemirror/commands";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { AuthorScene } from "./author_scene";
 import { Brush } from "./brush";
@@ -7,7 +8,7 @@ import { Filling } from "./filling";
 import { type GizmoMode, Gizmos, modesOf } from "./gizmos";
 import { type Imported, Findings, ImportForm, ImportResult } from "./import_form";
 import { Inspector } from "./inspector";
-import { type Item, listOf } from "./items";
+import { type Item, listOf, saidOf } from "./items";
 import { findJson } from "./json_edit";
 import { Objects } from "./objects";
 import { Empty, Problems, Readings, Section, ShownCommand } from "./parts";
@@ -303,12 +304,13 @@ function Toolbar({ scene, onSave, onLoad, onKeep, onTry, onCopied, error }: {
   const [isCopying, setCopying] = useState(false);
   const { errors, warnings } = scene.problems;
   const tools = scene.shown?.view.tools.length ?? 0;
+  const titled = (word: string, step: typeof undo, key: string) => [word, saidOf(doc.whatChanges(step), scene.items), `(${key})`].filter(Boolean).join(" ");
   return (
     <>
       <div class="transport">
         <div class="buttons" role="group" aria-label="History">
-          <button type="button" disabled={!doc.canUndo} title="Ctrl+Z" onClick={() => doc.undo()}>Undo</button>
-          <button type="button" disabled={!doc.canRedo} title="Ctrl+Shift+Z" onClick={() => doc.redo()}>Redo</button>
+          <button type="button" disabled={!doc.canUndo} title={titled("Undo", undo, "Ctrl+Z")} onClick={() => doc.undo()}>Undo</button>
+          <button type="button" disabled={!doc.canRedo} title={titled("Redo", redo, "Ctrl+Shift+Z")} onClick={() => doc.redo()}>Redo</button>
         </div>
         <span class={`verdict ${errors.length ? "bad" : "good"}`} role="status" aria-busy={scene.isBehind} title="What `ctpm check` says of the text as it is now; its lines are below the text">
           {verdictOf(errors.length, warnings.length)}{doc.isChanged ? ", not saved" : doc.onDisk === "same" ? ", saved" : ""}

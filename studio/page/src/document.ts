@@ -96,6 +96,18 @@ export class SceneDocument {
   get canRedo(): boolean {
     return redoDepth(this.view.state) > 0;
   }
+  /** What undo() or redo() would change, as the path to it; empty: several things, or nothing. */
+  whatChanges(step: typeof undo): JSONPath {
+    const paths: JSONPath[] = [], { state } = this.view;
+    step({ state, dispatch: (change) => change.changes.iterChanges((from, to, newFrom, newTo) => {
+      const isWritten = newTo - newFrom > to - from; // then it is where it will be
+      const text = (isWritten ? change.newDoc : state.doc).toString(), [begin, end] = isWritten ? [newFrom, newTo] : [from, to];
+      // A change may begin with what is between values.
+      paths.push(getLocation(text, begin + /^[\s,]*/.exec(text.slice(begin, end))![0].length).path);
+    }) });
+    const [first, ...others] = paths, apart = first?.findIndex((key, i) => others.some((path) => path[i] !== key)) ?? 0;
+    return apart < 0 ? first : (first ?? []).slice(0, apart);
+  }
   undo(): void {
     this.commit();
     this.last = null;

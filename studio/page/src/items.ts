@@ -199,6 +199,13 @@ export function sized(item: Item, size: three.Vector3): Values {
   return item.shape === "box" ? boxed(item, item.place!, size.clone().max(new three.Vector3(1e-4, 1e-4, 1e-4))) : [];
 }
 
+/** What a path leads to, as people say it: "radius_mm of ball", or "tools 3" if none of the items is there. */
+export function saidOf(path: JSONPath, items: Item[]): string {
+  const item = items.filter((i) => i.path.every((key, k) => path[k] === key)).sort((a, b) => b.path.length - a.path.length)[0];
+  const words = path.slice(item?.path.length ?? 0).map((key) => (typeof key === "number" ? String(key + 1) : key)).join(" ");
+  return item ? `${words}${words && " of "}${item.name}` : words;
+}
+
 /** A name that no entry of the list has yet: probe 1, probe 2 ... */
 export function freeName(list: Fields[], stem: string): string {
   const taken = new Set(list.map((entry) => entry.name));

@@ -196,6 +196,7 @@ step("the schema completes keys and values", async () => {
   await page.waitForTimeout(100);
   await page.keyboard.press("Enter");
   assert.equal((await scene()).solver.integrator, "leapfrog");
+  assert.equal(await button("Undo").getAttribute("title"), "Undo solver integrator (Ctrl+Z)");
   while (await button("Undo").isEnabled()) await button("Undo").click();
   assert.equal(await text(), good);
 });

@@ -10,9 +10,9 @@
 #include "recordings/state_hash.h"
 #include "studio/server/cuts_ahead.h"
 #include "studio/server/glimpse.h"
+#include "studio/server/idle_pause.h"
 #include "studio/server/moments.h"
 #include "studio/server/spare_cursors.h"
-#include "studio/server/urgency.h"
 #include "tests/studio/commands/run_program.h"
 
 namespace ctpm::server {

@@ -12,9 +12,9 @@
 #include "studio/devices/open_device.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/server/page_hand.h"
-#include "studio/server/urgency.h"
 #include "studio/session/record_session.h"
 #include "studio/session/unkept_session.h"
+#include "studio/session/urgency.h"
 #include "tests/studio/server/serving.h"
 
 namespace ctpm {
@@ -72,15 +72,11 @@ std::optional<Run> run_alone(const recordings::SessionStart& start, const Vec3& 
   std::atomic<bool> ends{false};
   std::optional<Run> run;
   std::thread ticks([&] {
-    server::become(server::Urgency::tick);  // as a training does
+    session::become(session::Urgency::tick);  // as a training does
     const auto should_stop = [&] { return ends.load(); };
     if (!followed->source->wait_for_first_pose(should_stop)) return;
     session::RunOptions options;
     options.threads = session::threads_for(start.model), options.should_stop = should_stop;
-    server::Precedence precedence(start.model.tick);
-    options.watch = [&](const State&, const recordings::TickRecord&, const session::RunOutcome&) {
-      precedence.go_on();
-    };
     const session::UnkeptSession unkept;
     const auto outcome = session::record_session(start, *followed->source, unkept.file(), false, options);
     if (!outcome) return;

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <atomic>
-#include <chrono>
-
-namespace ctpm::server {
+namespace ctpm::session {
 
 /// Whom a thread goes before, as the kernel's nice values have it. The browser draws on the same processors.
 enum class Urgency {
@@ -15,29 +12,6 @@ enum class Urgency {
 /// Gives the calling thread that urgency, and those that it makes. Only a privileged user may go before others; without
 /// that a thread stays as it was, but for ticks, which every user may let interrupt the slices of others.
 void become(Urgency urgency);
-
-/// While one lives, what may be of use later waits: a training runs. It also waits for a moment after each picture that
-/// somebody asked for, until the browser has drawn it: a nice value does not hold between programs whose sessions the
-/// kernel groups (autogroup).
-class IdlePause {
- public:
-  IdlePause() { ++count_; }
-  ~IdlePause() { --count_; }
-  IdlePause(const IdlePause&) = delete;
-  IdlePause& operator=(const IdlePause&) = delete;
-
-  static bool is_on() { return count_ > 0 || Clock::now().time_since_epoch().count() < held_until_; }
-
-  /// From now on for a moment.
-  static void hold() { held_until_ = (Clock::now() + kDrawing).time_since_epoch().count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds kDrawing{250};  ///< of a picture, by a browser without a GPU
-
-  static inline std::atomic<int> count_{0};
-  static inline std::atomic<Clock::rep> held_until_{0};
-};
 
 /// Lets a thread that does something over and over in real time go before everything else, as long as it leaves the
 /// processor free for a part of the time: it then interrupts even the browser's slices. Without the privilege it
@@ -60,4 +34,22 @@ class Precedence {
   bool is_first_ = false;
 };
 
-}  // namespace ctpm::server
+/// Lets the calling thread run ticks in real time before everything else, with the threads that it makes meanwhile.
+class TickUrgency {
+ public:
+  /// `tick`: from one to the next [s].
+  explicit TickUrgency(double tick);
+  /// The thread is as it was.
+  ~TickUrgency();
+  TickUrgency(const TickUrgency&) = delete;
+  TickUrgency& operator=(const TickUrgency&) = delete;
+
+  /// After each tick.
+  void go_on() { precedence_.go_on(); }
+
+ private:
+  int nice_before_;
+  Precedence precedence_;
+};
+
+}  // namespace ctpm::session

@@ -1,4 +1,4 @@
-#include "studio/server/urgency.h"
+#include "studio/session/urgency.h"
 
 #include <sched.h>
 #include <sys/prctl.h>
@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <ctime>
 
-namespace ctpm::server {
+namespace ctpm::session {
 namespace {
 
 /// struct sched_attr of the kernel, which not every C library declares.
@@ -74,4 +74,14 @@ void Precedence::give_up() {
   become(Urgency::tick);
 }
 
-}  // namespace ctpm::server
+TickUrgency::TickUrgency(double tick) : nice_before_(getpriority(PRIO_PROCESS, id_t(gettid()))), precedence_(tick) {
+  become(Urgency::tick);
+}
+
+TickUrgency::~TickUrgency() {
+  precedence_.give_up();
+  prctl(PR_SET_TIMERSLACK, 0UL);  // as for other threads
+  setpriority(PRIO_PROCESS, id_t(gettid()), nice_before_);
+}
+
+}  // namespace ctpm::session

@@ -1,14 +1,16 @@
 // Threads that go before others.
 
-#include "studio/server/urgency.h"
+#include "studio/session/urgency.h"
 
 #include <gtest/gtest.h>
 #include <sched.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <ctime>
 #include <thread>
 
-namespace ctpm::server {
+namespace ctpm::session {
 namespace {
 
 constexpr double kInterval = 1e-4;  // [s]
@@ -49,5 +51,21 @@ TEST(Urgency, AThreadGoesFirstWhileItLeavesTheProcessorFreeForOthers) {
   }).join();
 }
 
+TEST(Urgency, TicksInRealTimeGoFirstAndThenTheThreadIsAsItWas) {
+  if (!may_go_first()) GTEST_SKIP() << "this user may not schedule in real time";
+  std::thread([] {
+    const auto nice = [] { return getpriority(PRIO_PROCESS, id_t(gettid())); };
+    ASSERT_EQ(setpriority(PRIO_PROCESS, id_t(gettid()), 3), 0);
+    {
+      TickUrgency urgency(kInterval);
+      EXPECT_EQ(nice(), -15);
+      for (int i = 0; i < kEnough; ++i) urgency.go_on();
+      EXPECT_EQ(sched_getscheduler(0), SCHED_FIFO);
+    }
+    EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER);
+    EXPECT_EQ(nice(), 3);
+  }).join();
+}
+
 }  // namespace
-}  // namespace ctpm::server
+}  // namespace ctpm::session
