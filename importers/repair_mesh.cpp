@@ -21,6 +21,7 @@ constexpr double kFlat = 1e-9;         // of the diagonal cubed: a smaller volum
 constexpr double kRoundOff = 1.001;    // a limit that is written in whole millimetres still allows its hole
 constexpr double kLeastOrgan = 0.01;   // of the largest part's volume: smaller ones are no organs
 constexpr double kLeastCavity = 1e-4;  // of the volume around it
+constexpr double kOpening = 0.5;       // of an open part's diagonal: a wider hole makes it a sheet
 constexpr std::size_t kMostShown = 5;  // holes named one by one
 
 /// Which parts a repair keeps.
@@ -197,6 +198,7 @@ class Repair {
     const Errors is_sheet{{path_, "the mesh bounds no volume", "it is a sheet; export a closed surface"}};
     std::vector<Hole> filled;
     Errors open;
+    Refused refused;
     std::int64_t dropped = 0, dropped_triangles = 0, cavities = 0;
     Finding drop;
     for (Piece& piece : split_parts(soup_)) {
@@ -213,13 +215,15 @@ class Repair {
         }
         if (organs_.empty() && keep_ == Keep::largest) return why;
         if (open.empty()) open = why;
+        if (piece.volume > refused.volume && is_holed(piece, closing)) refused = {why, piece.volume};
       }
       ++dropped, dropped_triangles += std::int64_t(piece.soup.triangle.size());
       if (!drop.place) drop.place = bounding_box(piece.soup).centre();
     }
     // Nothing is left of sheets that meet at one edge: each is a wall to the others.
     if (organs_.empty() && open.empty()) return is_sheet;
-    if (organs_.empty() || are_crumbs(open)) return open;
+    if (organs_.empty() || is_small_beside(open)) return open;
+    if (organs_.front().volume < refused.volume) return refused.why;
     if (!filled.empty())
       note({"hole", std::int64_t(filled.size()), widest(filled).centre,
             counted(std::int64_t(filled.size()), "hole") + ", the widest " + hole_text(widest(filled)), "filled", ""});
@@ -229,8 +233,11 @@ class Repair {
     if (dropped > 0) {
       const std::size_t kept = organs_.size() + std::size_t(organs_.front().shells) - 1;
       drop.code = "other_part", drop.count = dropped;
-      drop.found = counted(dropped, "part") + " beside the " + (kept == 1 ? "largest" : "closed ones") + " (" +
-                   counted(dropped_triangles, "triangle") + ", the largest at " + place_text(*drop.place) + ")";
+      drop.found = counted(dropped, "part") + " beside the " +
+                   (kept > 1       ? "closed ones"
+                    : open.empty() ? "largest"
+                                   : "largest that is closed") +
+                   " (" + counted(dropped_triangles, "triangle") + ", the largest at " + place_text(*drop.place) + ")";
       drop.done = "dropped";
       if (!open.empty()) drop.remains = open[0].message;
       note(drop);
@@ -245,8 +252,21 @@ class Repair {
     return {};
   }
 
-  /// Whether all that could be closed is little beside the part that could not.
-  bool are_crumbs(const Errors& open) const {
+  /// The largest part that is an organ but for holes that may not be filled.
+  struct Refused {
+    Errors why;
+    double volume = 0;  ///< [m^3]
+  };
+
+  static bool is_holed(const Piece& piece, const Closing& closing) {
+    const double most = kOpening * bounding_box(piece.soup).diagonal();
+    const auto is_narrow = [&](const Hole& hole) { return hole.diameter < most; };
+    return std::all_of(closing.too_large.begin(), closing.too_large.end(), is_narrow) &&
+           std::all_of(closing.unfillable.begin(), closing.unfillable.end(), is_narrow) && !is_flat(piece.soup);
+  }
+
+  /// Whether all that could be closed is little beside what could not.
+  bool is_small_beside(const Errors& open) const {
     constexpr double kCrumb = 0.1;  // of the diagonal of the file
     return !open.empty() && keep_ == Keep::each && bounding_box(organs_.front().outer).diagonal() < kCrumb * diagonal_;
   }

@@ -128,9 +128,9 @@ std::vector<Moment> stray_cuts(const SessionTrack& expert, const SessionTrack& t
     }
     if (ticks.empty()) continue;
     const auto [first, last] = std::minmax_element(ticks.begin(), ticks.end());
-    const double count = double(ticks.size());
-    moments.push_back({MomentKind::stray_cut, trainee.seconds(std::size_t(*first)), trainee.seconds(std::size_t(*last)),
-                       trainee.seconds(std::size_t(*first)), count, 0, "elements",
+    const double count = double(ticks.size()), end = trainee.seconds(std::size_t(*last));
+    // What is cut stays cut: in the end all of it is seen.
+    moments.push_back({MomentKind::stray_cut, trainee.seconds(std::size_t(*first)), end, end, count, 0, "elements",
                        count / std::max(1.0, double(by_expert))});
   }
   return moments;

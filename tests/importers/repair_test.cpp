@@ -258,6 +258,26 @@ TEST(Repair, OpenPartIsDroppedWithTheReason) {
   EXPECT_NE(mesh->findings[0].remains.find("a hole 60"), std::string::npos) << mesh->findings[0].remains;
 }
 
+TEST(Repair, AnOrganWithAHoleIsNotDroppedForWhatIsClosedBesideIt) {
+  const double hole = 0.02;
+  const auto is_off = [&](Vec3 p) { return p.z > 0 && std::hypot(p.x, p.y) < 0.5 * hole; };
+  const importers::RawMesh raw = zoo::both(zoo::without(ball(), is_off), zoo::sphere(0.02, 3, {0.1, 0, 0}));
+  importers::RepairOptions options;
+  options.largest_hole = 0.5 * hole;
+  for (const bool is_each : {false, true}) {
+    options.all_parts = !is_each;
+    const auto errors = is_each ? importers::repair_parts(raw, 1, options, 2).errors()
+                                : importers::repair_mesh(raw, 1, options).errors();
+    ASSERT_FALSE(errors.empty());
+    EXPECT_NE(errors[0].message.find("open beyond repair: a hole"), std::string::npos) << errors[0].message;
+    EXPECT_NE(errors[0].hint.find("largest_hole_mm"), std::string::npos) << errors[0].hint;
+  }
+  options.largest_hole = 2 * hole;
+  const Result<std::vector<importers::CheckedMesh>> both = importers::repair_parts(raw, 1, options, 2);
+  ASSERT_TRUE(both) << text_of(both.errors());
+  EXPECT_EQ(both->size(), 2u);
+}
+
 TEST(Repair, AShellWithinTheLargestIsACavity) {
   // A bladder with a wall of 2 mm, the inner shell drawn either way round.
   for (const bool is_turned : {false, true}) {

@@ -16,7 +16,7 @@ import type { CameraView, Listing } from "./protocol";
 import { SceneEditor } from "./scene_editor";
 import { SceneList } from "./scene_list";
 import type { Shown } from "./stage_scene";
-import { command, verdictOf } from "./text";
+import { command, ofStep, verdictOf } from "./text";
 import { kTurns, Viewer } from "./viewer";
 
 const kLookOnDisk = 2000; // [ms]
@@ -184,7 +184,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
       drag(e);
       take([...e.dataTransfer?.files ?? []]);
     }}>
-      <nav class="list" aria-label="Scenes">
+      <nav class={`list ${doc ? "" : "alone"}`} aria-label="Scenes">
         <SceneList connection={connection} listing={listing} scene={scene} onOpen={open} onChanged={onChanged} />
         <label class="pick">
           Import a mesh…
@@ -222,7 +222,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
       <aside class="side">
         {dropped ? (
           <div class="panel">
-            <ImportForm key={dropped.name} connection={connection} file={dropped} leftOut={leftOut} open={scene?.shown ? scene : null} onCancel={() => setDropped(null)} onDone={(result, isAdded) => {
+            <ImportForm key={dropped.name} connection={connection} taken={listing.scenes.map((entry) => entry.path)} file={dropped} leftOut={leftOut} open={scene?.shown ? scene : null} onCancel={() => setDropped(null)} onDone={(result, isAdded) => {
               setDropped(null);
               if (!isAdded) open(result.scene);
               setImported(result);
@@ -304,7 +304,11 @@ function Toolbar({ scene, onSave, onLoad, onKeep, onTry, onCopied, error }: {
   const [isCopying, setCopying] = useState(false);
   const { errors, warnings } = scene.problems;
   const tools = scene.shown?.view.tools.length ?? 0;
-  const titled = (word: string, step: typeof undo, key: string) => [word, saidOf(doc.whatChanges(step), scene.items), `(${key})`].filter(Boolean).join(" ");
+  const share = scene.tickTime ? scene.tickTime.measured_tick_time_s / scene.tickTime.tick_s : 0;
+  const titled = (word: string, step: typeof undo, key: string) => {
+    const what = doc.whatChanges(step);
+    return [word, what && saidOf(what.path, what.value), `(${key})`].filter(Boolean).join(" ");
+  };
   return (
     <>
       <div class="transport">
@@ -318,7 +322,7 @@ function Toolbar({ scene, onSave, onLoad, onKeep, onTry, onCopied, error }: {
         <div class="buttons">
           <button type="button" disabled={!doc.isChanged} title="Ctrl+S" onClick={onSave}>Save</button>
           <button type="button" aria-expanded={isCopying} onClick={() => setCopying(!isCopying)}>Save a copy…</button>
-          <button type="button" class="main" disabled={tools === 0 || errors.length > 0} title={tools === 0 ? "The scene has no tool yet" : "Nothing is recorded"} onClick={onTry}>Try it</button>
+          <button type="button" class="main" disabled={tools === 0 || errors.length > 0} title={errors.length > 0 ? "Its text has errors" : tools === 0 ? "The scene has no tool yet" : "Nothing is recorded"} onClick={onTry}>Try it</button>
         </div>
       </div>
       {isCopying && <CopyForm key={doc.path} doc={doc} onClose={() => setCopying(false)} onCopied={onCopied} />}
@@ -331,6 +335,7 @@ function Toolbar({ scene, onSave, onLoad, onKeep, onTry, onCopied, error }: {
           </div>
         </div>
       )}
+      {share > 1 && !scene.isBehind && <p class="earlier-visit warning" role="status">A step of this scene takes {ofStep(scene.tickTime!.measured_tick_time_s, scene.tickTime!.tick_s)}: on this machine it runs in slow motion. Larger spheres (filling), or organs that do not touch, help.</p>}
       {doc.onDisk === "same" && doc.isOfEarlierVisit && <p class="earlier-visit warning" role="status">These are unsaved changes of an earlier visit: Undo takes them back, Save writes them into the file.</p>}
     </>
   );
@@ -340,14 +345,16 @@ function Toolbar({ scene, onSave, onLoad, onKeep, onTry, onCopied, error }: {
 function CopyForm({ doc, onClose, onCopied }: { doc: SceneDocument; onClose: () => void; onCopied: (path: string) => void }) {
   const [, folder, stem] = /^(.*\/)?(.*?)(?:\.json)?$/.exec(doc.path)!;
   const [name, setName] = useState(`${stem}-2`), [error, setError] = useState<Error | null>(null);
+  const field = useRef<HTMLInputElement>(null);
+  useEffect(() => field.current?.select(), []);
   const path = `${folder ?? ""}${name}.json`;
   const isName = /^[^/\\]+$/.test(name);
   return (
-    <form class="conflict" onSubmit={(e) => {
+    <form class="conflict" onKeyDown={(e) => e.key === "Escape" && onClose()} onSubmit={(e) => {
       e.preventDefault();
       doc.saveCopy(path).then(() => (onClose(), onCopied(path)), setError);
     }}>
-      <label class="copy-name">{folder}<input value={name} aria-label="Name of the copy, without .json" onInput={(e) => (setName(e.currentTarget.value), setError(null))} />.json</label>
+      <label class="copy-name">{folder}<input ref={field} value={name} aria-label="Name of the copy, without .json" onInput={(e) => (setName(e.currentTarget.value), setError(null))} />.json</label>
       <Problems error={error} />
       <div class="buttons">
         <button type="submit" class="main" disabled={!isName}>Save the copy</button>
@@ -400,6 +407,7 @@ function Meeting({ scene: { doc } }: { scene: AuthorScene }) {
         <input type="checkbox" checked={meets} onChange={() => doc!.set([[["organs_meet"], !meets]])} />
         <span>they touch each other; otherwise they pass through each other</span>
       </label>
+      <p class="hint">Organs that touch cost time where they are near each other: where they lie on each other, a step may take several times as long.</p>
     </Section>
   );
 }

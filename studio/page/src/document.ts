@@ -5,7 +5,7 @@ import { EditorView } from "@codemirror/view";
 import { findNodeAtLocation, getLocation, type JSONPath, parseTree } from "jsonc-parser";
 import type { Connection } from "./connection";
 import { dropDraft, type FileText, putDraft, putHistory, readDraft, readHistory } from "./drafts";
-import { applied, type Change, type Json, parseJson, removeValue, setValue } from "./json_edit";
+import { applied, type Change, differences, findJson, type Json, parseJson, removeValue, setValue } from "./json_edit";
 import { editorOf, gesture, keptHistory, rangeOf, underlined, withHistory } from "./json_editor";
 import { CallFailed, type Problem } from "./protocol";
 import type { Schema } from "./scene_schema";
@@ -96,17 +96,21 @@ export class SceneDocument {
   get canRedo(): boolean {
     return redoDepth(this.view.state) > 0;
   }
-  /** What undo() or redo() would change, as the path to it; empty: several things, or nothing. */
-  whatChanges(step: typeof undo): JSONPath {
-    const paths: JSONPath[] = [], { state } = this.view;
-    step({ state, dispatch: (change) => change.changes.iterChanges((from, to, newFrom, newTo) => {
-      const isWritten = newTo - newFrom > to - from; // then it is where it will be
-      const text = (isWritten ? change.newDoc : state.doc).toString(), [begin, end] = isWritten ? [newFrom, newTo] : [from, to];
-      // A change may begin with what is between values.
-      paths.push(getLocation(text, begin + /^[\s,]*/.exec(text.slice(begin, end))![0].length).path);
-    }) });
-    const [first, ...others] = paths, apart = first?.findIndex((key, i) => others.some((path) => path[i] !== key)) ?? 0;
-    return apart < 0 ? first : (first ?? []).slice(0, apart);
+  /** What undo() or redo() would change, as the path to all of it in a value; null: nothing that can be told. */
+  whatChanges(step: typeof undo): { path: JSONPath; value: Json } | null {
+    let text: string | null = null;
+    step({ state: this.view.state, dispatch: (change) => (text = change.newDoc.toString()) });
+    const { value } = this, after = text === null ? undefined : parseJson(text);
+    if (value === undefined || after === undefined) return null;
+    const [path, ...others] = differences(value, after, []).map(([path]) => path);
+    if (!path) return null;
+    const apart = path.findIndex((key, i) => others.some((other) => other[i] !== key)), common = apart < 0 ? path : path.slice(0, apart);
+    const [now, then] = [findJson(value, common), findJson(after, common)], whole = now === undefined ? after : value;
+    if (!Array.isArray(now) || !Array.isArray(then) || Math.abs(now.length - then.length) !== 1) return { path: common, value: whole };
+    // One entry more or less: it is where the lists begin to differ.
+    const [longer, shorter] = now.length > then.length ? [now, then] : [then, now];
+    const entry = longer.findIndex((member, i) => JSON.stringify(member) !== JSON.stringify(shorter[i]));
+    return { path: [...common, entry], value: longer === now ? value : after };
   }
   undo(): void {
     this.commit();
@@ -151,9 +155,12 @@ export class SceneDocument {
     this.took({ text, revision: (await this.connection.call<{ revision: string }>("scene.write", { path: this.path, text, revision: this.revision })).revision });
   }
 
-  /** Writes the text as it is now into a file that is not there yet; this one stays as it is. */
+  /** Writes the text as it is now into a file that is not there yet, under that file's name; this one stays as it is. */
   async saveCopy(path: string): Promise<void> {
-    await this.connection.call("scene.write", { path, text: this.text, revision: kNoFile });
+    // Sessions are known by the scene's name, which is mostly that of its file.
+    const isNamedSo = findJson(this.value, ["name"]) === nameOf(this.path);
+    const text = isNamedSo ? changed(this.text, [[["name"], nameOf(path)]]) : this.text;
+    await this.connection.call("scene.write", { path, text, revision: kNoFile });
   }
 
   /** Goes back to what the file says now; undo brings the changes back. */
@@ -251,6 +258,7 @@ export class SceneDocument {
   }
 }
 
+const nameOf = (path: string) => path.replace(/^.*\//, "").replace(/\.json$/, "");
 const kNoFile = "none"; // revision of a file that is not there
 
 /** A scene's file as the editor has it: each of its lines ends with the same character. */

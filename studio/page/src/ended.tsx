@@ -66,6 +66,9 @@ export function Ended({ connection, listing, scenes, sceneKey, ended, expert, on
       {ended.errors.map((problem, i) => <p key={i} class="warning" role="alert">{problemText(problem)}</p>)}
       {ended.fault && <p class="warning">{ended.fault}</p>}
       {ended.refused && <p class="warning">The simulation was refused; what came before is saved.</p>}
+      {!ended.path && !onAuthor && ended.errors.length === 0 && (
+        <p class="hint">Nothing was recorded, so there is nothing to verify or to compare. Give the session a name (record as) before it begins.</p>
+      )}
       {path && (
         <Section title="Verify and compare">
           <ExpertChoice listing={others} scenes={scenes} sceneKey={sceneKey} expert={expert} onExpert={onExpert} use="to compare with" />

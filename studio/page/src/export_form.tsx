@@ -137,8 +137,9 @@ export function ExportForm({ connection, player, look, comparison, job: { progre
     align: beside && align, slow_at: slowAt || undefined, caption: caption.trim() || undefined, allow_diverged: isDifferentShown, ...lookParameters(filmed),
   };
   const clock = player.tracks.get(isGhost ? 1 : 0)!, time = player.timeOf(clock.stage); // of the session by whose clock the times are
+  const end = Math.floor(100 * clock.session.info.duration_s) / 100; // one that is rounded up is after the session
+  const isThere = time > -1e-3 && time < clock.session.info.duration_s + 1e-3; // by its clock
   const around = () => {
-    const end = Math.floor(100 * clock.session.info.duration_s) / 100; // one that is rounded up is after the session
     setFrom(Math.max(0, Math.min(time, end) - 1).toFixed(2));
     setTo(Math.min(end, time + 1).toFixed(2));
     goTo({ name: `-${Math.max(0, player.timeOf(beside ? 1 : 0)).toFixed(2)}s`, fault: faultAt(player, comparison) });
@@ -186,7 +187,8 @@ export function ExportForm({ connection, player, look, comparison, job: { progre
         {field("from [s]", from, (text) => (setFrom(text), goTo(kNoMoment)), "number")}
         {field("to [s]", to, (text) => (setTo(text), goTo(kNoMoment)), "number")}
       </div>
-      <button type="button" onClick={around}>1 s before {seconds(time, 2)} to 1 s after</button>
+      <button type="button" disabled={!isThere} onClick={around}>1 s before {seconds(time, 2)} to 1 s after</button>
+      {!isThere && <p class="hint">At this moment the {beside && isGhost ? "trainee" : "first session"} has not begun, or has ended. Another alignment brings both together{beside && !isGhost ? "; so does the expert as a ghost" : ""}.</p>}
       {beside && <p class="hint">These times are by the {isGhost ? "trainee" : "expert"}'s clock.</p>}
       <div class="pair">
         {field("times real speed", speed, setSpeed, "number")}

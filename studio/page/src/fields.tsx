@@ -1,18 +1,19 @@
 import * as three from "three";
 
 /** A number that the text holds: `onInput` while it is changed, `onDone` when that is over. */
-export function NumberField({ label, value, unit, step, least, onInput, onDone }: {
+export function NumberField({ label, value, unit, step, least, hasOwnUnit = false, onInput, onDone }: {
   label: string;
   value: number;
   unit: string;
   step: number;
   least?: number;
+  hasOwnUnit?: boolean; // which stands beside its name
   onInput: (value: number) => void;
   onDone: () => void;
 }) {
   return (
     <label class="number-field">
-      <span>{label}</span>
+      <span>{label}{hasOwnUnit && ` [${unit}]`}</span>
       <input type="number" step={step} value={Number.isFinite(value) ? value : ""} aria-label={`${label} [${unit}]`}
         onInput={(e) => {
           const number = e.currentTarget.valueAsNumber;

@@ -8,7 +8,7 @@ import { freeName, listOf, mmVector } from "./items";
 import { type Json, parseJson } from "./json_edit";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { CallFailed, type CameraView, type Vector } from "./protocol";
-import { command } from "./text";
+import { command, freePath } from "./text";
 import { seesBox } from "./viewer";
 
 interface Preset {
@@ -109,8 +109,9 @@ async function addOrgans(connection: Connection, open: AuthorScene, imported: Im
 }
 
 /** What is needed to make a scene of a mesh, and how far it is. */
-export function ImportForm({ connection, file, leftOut, open, onCancel, onDone }: {
+export function ImportForm({ connection, taken, file, leftOut, open, onCancel, onDone }: {
   connection: Connection;
+  taken: string[]; // scenes that there are
   file: File;
   leftOut: string[]; // files that came with it
   open: AuthorScene | null; // a scene to which the organ can be added
@@ -126,7 +127,7 @@ export function ImportForm({ connection, file, leftOut, open, onCancel, onDone }
   const [radius, setRadius] = useState("");
   const [labels, setLabels] = useState("");
   const [hole, setHole] = useState("");
-  const [scene, setScene] = useState(/\.obj$/i.test(file.name) ? `${stem}-scene.json` : `${stem}.json`);
+  const [scene, setScene] = useState(() => freePath(taken, /\.obj$/i.test(file.name) ? `${stem}-scene.json` : `${stem}.json`));
   const [isAdded, setAdded] = useState(false);
   const [progress, setProgress] = useState<[string, number] | null>(null);
   const [error, setError] = useState<Error | null>(null);

@@ -27,7 +27,7 @@ export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScen
   };
   const number = (label: string, key: (string | number)[], otherwise: number, unit = "mm", step = 0.5, least = 0.01) => {
     const value = read(...key);
-    return <NumberField label={`${label} [${unit}]`} unit={unit} step={step} least={least} value={typeof value === "number" ? value : otherwise}
+    return <NumberField label={label} hasOwnUnit unit={unit} step={step} least={least} value={typeof value === "number" ? value : otherwise}
       onInput={(n) => preview([[at(...key), n]])} onDone={done} />;
   };
   const place = item.place ? mmVector(item.place) : [0, 0, 0];

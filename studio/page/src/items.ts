@@ -199,10 +199,10 @@ export function sized(item: Item, size: three.Vector3): Values {
   return item.shape === "box" ? boxed(item, item.place!, size.clone().max(new three.Vector3(1e-4, 1e-4, 1e-4))) : [];
 }
 
-/** What a path leads to, as people say it: "radius_mm of ball", or "tools 3" if none of the items is there. */
-export function saidOf(path: JSONPath, items: Item[]): string {
-  const item = items.filter((i) => i.path.every((key, k) => path[k] === key)).sort((a, b) => b.path.length - a.path.length)[0];
-  const words = path.slice(item?.path.length ?? 0).map((key) => (typeof key === "number" ? String(key + 1) : key)).join(" ");
+/** What is at a path of a scene, as people say it: "radius_mm of ball", or "tools" for several of them. */
+export function saidOf(path: JSONPath, scene: Json): string {
+  const item = itemsOf(scene, null).filter((i) => i.path.every((key, k) => path[k] === key)).sort((a, b) => b.path.length - a.path.length)[0];
+  const words = path.slice(item?.path.length ?? 0).filter((key) => typeof key === "string").join(" ");
   return item ? `${words}${words && " of "}${item.name}` : words;
 }
 

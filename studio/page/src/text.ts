@@ -26,6 +26,12 @@ export function verdictOf(errors: number, warnings: number): string {
   return errors ? counted(errors, "error") : warnings ? `good, ${counted(warnings, "warning")}` : "good";
 }
 
+/** That path, or with the next number, so that it is none of those that are taken. */
+export function freePath(taken: string[], path: string): string {
+  const [, stem, ending = ""] = /^(.*?)(?:-\d+)?(\.[^./]+)?$/.exec(path)!;
+  for (let i = 1, free = path; ; free = `${stem}-${++i}${ending}`) if (!taken.includes(free)) return free;
+}
+
 /** How far a session fell behind real time. */
 export function behind(atEnd: number, atMost: number): string {
   return atMost > 0 ? `${seconds(atEnd)} at the end, ${seconds(atMost)} at most` : "never";

@@ -12,7 +12,7 @@ import { Empty, Problems, Readings, Section, ShownCommand, useRedraw } from "./p
 import type { Place } from "./place";
 import type { CameraView, EndedTraining, Listing, Motion, SceneOfSession } from "./protocol";
 import { ForceSound } from "./sound";
-import { command, millimetres } from "./text";
+import { command, freePath, millimetres } from "./text";
 import { TrainBar } from "./train_bar";
 import { Now, Task } from "./train_now";
 import { kGhostAhead, Trainer } from "./trainer";
@@ -26,11 +26,8 @@ const kUsualName = "mine-1.ctpm";
 
 const withEnding = (name: string) => (name === "" || name.endsWith(".ctpm") ? name : `${name}.ctpm`);
 
-/** A name for a session that does not exist yet: that name, or with the next number. */
-function freeName({ sessions }: Listing, name: string): string {
-  const taken = new Set(sessions.map(({ path }) => path)), stem = name.replace(/(-\d+)?\.ctpm$/, "");
-  for (let i = 1, free = name; ; free = `${stem}-${++i}.ctpm`) if (!taken.has(free)) return free;
-}
+/** A name for a session that does not exist yet. */
+const freeName = ({ sessions }: Listing, name: string) => freePath(sessions.map(({ path }) => path), name);
 
 export function Train({ connection, listing, tryScene, tryText, tryView, onReview, onAuthor, onChanged, onRecording }: {
   connection: Connection;

@@ -132,6 +132,7 @@ export class Trainer {
   /** Mouse, keys and gamepad lead the other hand from now on. */
   lead(hand: number): void {
     if (hand < this.handCount) this.led = hand;
+    if (!this.hasBegun) this.showWaiting();
   }
 
   /** Loads a scene and takes the tools in the hands, unless a `device` leads. `text` is taken in place of its file's;
@@ -248,9 +249,9 @@ export class Trainer {
     this.moveBy(right * metres, -down * metres, 0);
   }
 
-  /** Moves the hand away from the viewer, by notches of the wheel. */
+  /** Moves the hand that is led here away from the viewer, by notches of the wheel. */
   moveDeep(notches: number): void {
-    this.moveBy(0, 0, notches * kWheelStep * this.gain());
+    if (this.isHeld || this.isLedByKeys) this.moveBy(0, 0, notches * kWheelStep * this.gain());
   }
 
   /** Does what a key says. False: nothing. */

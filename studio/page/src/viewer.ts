@@ -110,6 +110,7 @@ export class Viewer {
     this.fieldOfView = camera.fov_deg;
     this.controls.target.set(...camera.target);
     this.controls.update();
+    this.camera.updateMatrixWorld(); // what is placed by it need not wait for a picture
     this.draw();
   }
 

@@ -68,6 +68,12 @@ step(`a mesh of ${kTriangles} triangles is imported, and an import that is stopp
   await picture(page, "author-large");
 });
 
+step("the next import of that mesh is proposed a name that nothing has", async () => {
+  await drop("large.obj", "");
+  assert.equal(await page.locator("aside label:has-text('scene to write') input").inputValue(), "large-scene-2.json");
+  await button("Back", "aside").click();
+});
+
 step("a hole that is too wide is told, and closed when its author says so", async () => {
   const lines = readFileSync(join(paths.source, "scenes", "organs", "kidney.obj"), "utf8").trimEnd().split("\n");
   const x = lines.filter((line) => line.startsWith("v ")).map((line) => Number(line.split(/\s+/)[1])), least = Math.min(...x), most = Math.max(...x);

@@ -30,6 +30,13 @@ step("the mouse leads one of two hands, and the other one stays", async () => {
   assert.equal(await pressed("right hand"), "true");
   assert.equal(await pressed("ball"), "true");
   assert.ok(await page.locator(".transport button:has-text('scalpel')").isDisabled(), "it is in the other hand");
+  // Each waits on its side of the picture, whatever was seen before, and the ring shows which one is led.
+  await page.waitForSelector(".take-up");
+  const ring = async () => (await page.locator(".take-up").boundingBox()).x, ofRight = await ring();
+  await page.keyboard.press("x");
+  assert.ok((await until(ring, (x) => x < ofRight - 20)) < ofRight - 20, `the right hand waits at ${ofRight} px`);
+  await page.keyboard.press("x");
+  assert.ok(Math.abs((await until(ring, (x) => Math.abs(x - ofRight) < 2)) - ofRight) < 2);
   const middle = await takeUp(page);
   await moveMouse(page, middle, { x: 0, y: 150 }, 40);
   await page.waitForFunction(() => [...document.querySelectorAll(".readings div")].some((d) => /force, right0?\.?0*[1-9]/.test(d.textContent)));

@@ -203,6 +203,7 @@ step("organs are told to touch each other, removed, and the scene is saved under
   await page.locator(".objects button", { has: page.locator('span:text-is("kidney-2")') }).click();
   await page.locator("#panel .remove").click();
   assert.deepEqual((await scene()).organs.map(({ name }) => name), ["kidney"]);
+  assert.equal(await button("Undo").getAttribute("title"), "Undo kidney-2 (Ctrl+Z)");
   await page.locator(".objects button", { has: page.locator('span:text-is("kidney")') }).click();
   assert.equal(await page.locator("#panel .remove").count(), 0, "the last one stays");
   await button("Save a copy…").click();
@@ -215,6 +216,7 @@ step("organs are told to touch each other, removed, and the scene is saved under
   await page.waitForSelector(".scenes button[aria-current=true]:has-text('one kidney')");
   await settled();
   assert.equal(JSON.parse(onDisk("one kidney.json")).organs.length, 1);
+  assert.equal(JSON.parse(onDisk("one kidney.json")).name, "one kidney", "recordings tell it from the other one");
   assert.equal(ctpm(folder, "check", "one kidney.json").code, 0);
   assert.equal(JSON.parse(onDisk()).organs.length, 2);
   await page.locator(".scenes button", { has: page.locator(`span:text-is("${kScene.replace(".json", "")}")`) }).click();

@@ -272,6 +272,11 @@ step("each session has its own clock and its own axis, below each other where th
     await keepHeight();
     const captions = await page.locator(".captions b").allInnerTexts();
     for (const [i, begin] of begins.entries()) assert.ok(captions[i].endsWith(` ${begin.replace(/ of$/, "")}`), `${captions[i]}: ${begin}`);
+    // Around a moment that its clock does not have there is no film.
+    await page.click("#tab-export");
+    assert.equal(await page.locator("#panel button:has-text('1 s before')").isDisabled(), begins[0] === "not begun");
+    await page.click("#tab-compare");
+    await page.locator(".view > canvas").focus();
     await page.keyboard.press("End");
     const [ownEnd, otherEnd] = await page.waitForFunction((to) => {
       const texts = [...document.querySelectorAll(".clock, .clock-beside")].map((clock) => clock.innerText);

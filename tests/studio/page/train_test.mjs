@@ -227,6 +227,8 @@ step("a session begins when the tool is taken up: what comes before is in no tim
   const ball = await canvas.screenshot();
   await page.keyboard.press("2");
   assert.ok((await until(async () => !ball.equals(await canvas.screenshot()), Boolean)), "the scalpel is drawn in place of the ball");
+  await page.mouse.wheel(0, -100); // a pointer that holds nothing moves nothing away
+  await page.waitForTimeout(100);
   assert.equal(studio.handsSent(), sent);
   await page.keyboard.press("1");
   // Its cameras are looked through one after the other, and the tool waits where it is.
