@@ -335,7 +335,7 @@ function Toolbar({ scene, onSave, onLoad, onKeep, onTry, onCopied, error }: {
           </div>
         </div>
       )}
-      {share > 1 && !scene.isBehind && <p class="earlier-visit warning" role="status">A step of this scene takes {ofStep(scene.tickTime!.measured_tick_time_s, scene.tickTime!.tick_s)}: on this machine it runs in slow motion. Larger spheres (filling), or organs that do not touch, help.</p>}
+      {share > 1 && !scene.isBehind && <p class="earlier-visit warning" role="status">A step of this scene takes {ofStep(scene.tickTime!.measured_tick_time_s, scene.tickTime!.tick_s)}: on this machine it runs in slow motion. Larger spheres (filling){listOf(doc.lastValue, "organs").length > 1 ? ", or organs that do not touch, help" : " help"}.</p>}
       {doc.onDisk === "same" && doc.isOfEarlierVisit && <p class="earlier-visit warning" role="status">These are unsaved changes of an earlier visit: Undo takes them back, Save writes them into the file.</p>}
     </>
   );

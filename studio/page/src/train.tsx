@@ -182,7 +182,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
           onPointerDown={onPointerDown} onPointerLeave={onPointerLeave} onContextMenu={(e) => e.preventDefault()} />
         {phase === "choose" && (
           <Empty title="Choose a scene to train in">
-            <p>The tool follows the mouse. The session is recorded, and measured against an expert's when you end it.</p>
+            <p>The tool follows the mouse. {chosenName === "" ? "Nothing is recorded: beside the picture a session gets a name." : "The session is recorded, and measured against an expert's when you end it."}</p>
           </Empty>
         )}
         {phase === "loading" && (
