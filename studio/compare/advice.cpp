@@ -42,7 +42,7 @@ std::string to_sentence(const Moment& moment, double seconds, double sum, std::s
              (count > 1 ? ", and in such zones" + in_all + "." : ".");
     case MomentKind::stray_cut:
       return "Cut only where the expert cut: " + number(sum) + " severed elements are ones that the expert left whole" +
-             ", " + (count > 1 ? number(moment.value) : "all") + " of them in the cut" + at(moment) + ".";
+             ", " + (count > 1 ? number(moment.value) : "all") + " of them in the cut that ends" + at(moment) + ".";
     case MomentKind::force:
       return "Press more gently: " + value + at(moment) + ", above the limit of " + limit + in_all + ".";
     case MomentKind::depth:
