@@ -9,6 +9,7 @@ import { applied, type Change, differences, findJson, type Json, parseJson, remo
 import { editorOf, gesture, keptHistory, rangeOf, underlined, withHistory } from "./json_editor";
 import { CallFailed, type Problem } from "./protocol";
 import type { Schema } from "./scene_schema";
+import { sceneName } from "./text";
 
 const kOneStep = 500; // changes of the same values that follow each other within it are one step [ms]
 const kKeepAfter = 300; // without a change the history is kept for the next visit [ms]
@@ -258,7 +259,7 @@ export class SceneDocument {
   }
 }
 
-const nameOf = (path: string) => path.replace(/^.*\//, "").replace(/\.json$/, "");
+const nameOf = (path: string) => sceneName(path).replace(/^.*\//, "");
 const kNoFile = "none"; // revision of a file that is not there
 
 /** A scene's file as the editor has it: each of its lines ends with the same character. */
