@@ -75,15 +75,6 @@ struct Above {
   }
 };
 
-bool may_touch(const Vec3* corners, Vec3 centre, double radius) {
-  const auto is_apart = [&](double a, double b, double c, double at) {
-    return std::min({a, b, c}) > at + radius || std::max({a, b, c}) < at - radius;
-  };
-  return !is_apart(corners[0].x, corners[1].x, corners[2].x, centre.x) &&
-         !is_apart(corners[0].y, corners[1].y, corners[2].y, centre.y) &&
-         !is_apart(corners[0].z, corners[1].z, corners[2].z, centre.z);
-}
-
 }  // namespace
 
 BallContact::BallContact(const Model& model, std::vector<surface::Body>& bodies, CutSurfaces& cuts,
@@ -297,15 +288,17 @@ double BallContact::share_of(const Part& part, std::int32_t slot, double radius)
 /// `reach`: of the ball where it touched before [m].
 bool BallContact::dent(const Part& part, const surface::NearSurface::Triangle& triangle, const BallMotion& ball,
                        double reach, bool behind) {
-  const Vec3 corners[3] = {part.surface->place(triangle.corner[0]), part.surface->place(triangle.corner[1]),
-                           part.surface->place(triangle.corner[2])};
   std::int32_t vertex[3];
   for (std::size_t c = 0; c < 3; ++c) vertex[c] = part.first_slot + triangle.corner[c];
   std::int32_t slot[3];
   for (std::size_t c = 0; c < 3; ++c) slot[c] = part.gathers_at(triangle.corner[c]);
   const bool was_touched =
       was_touched_[std::size_t(slot[0])] || was_touched_[std::size_t(slot[1])] || was_touched_[std::size_t(slot[2])];
-  if (!may_touch(corners, ball.centre, was_touched ? reach : ball.radius)) return false;
+  const Box near = Box(ball.centre).grown(was_touched ? reach : ball.radius);
+  if (part.patch != nullptr && !near.meets(part.surface->around(triangle))) return false;  // to turn costs more
+  const Vec3 corners[3] = {part.surface->place(triangle.corner[0]), part.surface->place(triangle.corner[1]),
+                           part.surface->place(triangle.corner[2])};
+  if (!near.meets(Box(corners[0], corners[1], corners[2]))) return false;
   double shares[3] = {1, 1, 1};
   for (std::size_t c = 0; c < 3 && part.patch != nullptr; ++c) shares[c] = share_of(part, vertex[c], ball.radius);
   if (shares[0] == 0 && shares[1] == 0 && shares[2] == 0) return false;

@@ -5,6 +5,13 @@
 #include <utility>
 
 namespace ctpm::contact {
+namespace {
+
+/// What will be due after fewer rounds like the last one is looked at in each: to wait would cost more, and most where
+/// tissue turns (our choices).
+constexpr double kWorthWaiting = 3, kWorthTurning = 30;
+
+}  // namespace
 
 NearObstacle::NearObstacle(const Model& model, surface::Body& body, const surface::ObstacleShape& shape,
                            CutSurfaces& cuts)
@@ -18,7 +25,8 @@ NearObstacle::NearObstacle(const Model& model, surface::Body& body, const surfac
 }
 
 const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& position) {
-  path_ += farthest_moved(position_, position, std::size_t(organ_.first)), ++round_;
+  step_ = farthest_moved(position_, position, std::size_t(organ_.first));
+  path_ += step_, ++round_;
   if (version_ != cuts_.version()) find_parts();
   if (!(path_ < kLongestPath)) look_at_all();
   for (std::size_t s = 0; s < position_.size(); ++s) position_.set(s, position[std::size_t(organ_.first) + s]);
@@ -26,6 +34,8 @@ const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& posi
   due_.insert(due_.end(), always_.begin(), always_.end()), always_.clear();
   for (std::size_t region = 0; region < regions_.size(); ++region)
     if (due_at_[region] <= path_) take_due(region);
+  for (; !turning_.empty() && turning_.front().due <= path_; turning_.pop_back())
+    due_.push_back(turning_.front()), std::pop_heap(turning_.begin(), turning_.end());
   while (!due_.empty()) {
     const Item item = due_.back();
     due_.pop_back();
@@ -49,7 +59,7 @@ void NearObstacle::find_parts() {
 
 /// All is to be looked at.
 void NearObstacle::look_at_all() {
-  path_ = 0, always_.clear(), due_.clear();
+  path_ = 0, turning_.clear(), always_.clear(), due_.clear();
   for (std::size_t number = 0; number < regions_.size(); ++number) {
     Region& region = regions_[number];
     region.path = 0, region.round = 0, region.waiting.clear(), due_at_[number] = INFINITY;
@@ -88,7 +98,8 @@ void NearObstacle::bring_up_to_date(Region& region) {
   const Vec3* way = shape_.only_way();
   const double farthest = region.spheres.farthest_moved(
       position_, [&](Vec3 by) { return way != nullptr ? std::abs(dot(by, *way)) : norm(by); });
-  if (region.round != 0) region.path += farthest;
+  region.step = region.round != 0 ? farthest : 0;
+  region.path += region.step;
   region.round = round_;
 }
 
@@ -123,12 +134,25 @@ void NearObstacle::look_at(Item item) {
 }
 
 void NearObstacle::wait(Item item, double clearance, double stretch) {
-  if (!(clearance > kRounding)) return always_.push_back(item);
+  const double path = (clearance - kRounding) / stretch;
+  if (!(path > 0)) return always_.push_back(item);
   Region& region = regions_[std::size_t(item.region)];
   bring_up_to_date(region);
-  item.due = region.path + (clearance - kRounding) / stretch;
+  if (!(path > kWorthWaiting * region.step)) return always_.push_back(item);
+  item.due = region.path + path;
   region.waiting.push_back(item), std::push_heap(region.waiting.begin(), region.waiting.end());
   schedule(std::size_t(item.region));
+}
+
+/// The spheres by which its tissue turns may be of other regions, and turn it wherever they move.
+void NearObstacle::wait_turning(Item item, double clearance, const surface::NearSurface& surface) {
+  const double least = kWorthTurning * step_;
+  if (!(clearance - kRounding > least)) return always_.push_back(item);
+  const surface::TurnBound turn = surface.offset_bound(item.number);
+  const double path = std::min(turn.reach, (clearance - kRounding) / (surface.stretch(item.number) + turn.rate));
+  if (!(path > least)) return always_.push_back(item);
+  item.due = path_ + path;
+  turning_.push_back(item), std::push_heap(turning_.begin(), turning_.end());
 }
 
 /// Looks at a run of triangles or of patches by its box.
@@ -161,11 +185,12 @@ void NearObstacle::look_at_vertex(Item item) {
   const double turns = surface.offset_size(item.number);
   double depth;
   if (turns > 0 && (depth = shape_.inside(surface.carried(item.number)).depth) + turns < 0)
-    return wait(item, -depth - turns, surface.stretch());
+    return wait(item, -depth - turns, surface.stretch(item.number));
   const surface::Inside inside = shape_.inside(surface.place(item.number));
   if (inside.depth > 0)
     found_.push_back({part_number, item.number, part.first_corner[std::size_t(item.number)], inside});
-  wait(item, turns > 0 ? 0 : -inside.depth, surface.stretch());
+  if (turns > 0) return wait_turning(item, -inside.depth, surface);
+  wait(item, -inside.depth, surface.stretch(item.number));
 }
 
 }  // namespace ctpm::contact

@@ -40,7 +40,7 @@ class NearObstacle {
   const std::vector<Part>& parts() const { return parts_; }
 
  private:
-  /// Something that is outside as long as its region's path is shorter than `due`.
+  /// Something that is outside as long as its region's path, or that of all, is shorter than `due`.
   enum class Kind : std::uint8_t { group, patch, vertex };
   struct Item {
     double due;  ///< [m]
@@ -54,6 +54,7 @@ class NearObstacle {
     std::int32_t part, group;
     WatchedSpheres spheres{};     ///< as of when it was last brought up to date; within the organ
     double path = 0;              ///< sum of how far the farthest of them moved from one of these to the next [m]
+    double step = 0;              ///< last part of it [m]
     std::uint32_t round = 0;      ///< in which it was last brought up to date; 0: it never was
     std::vector<Item> waiting{};  ///< heap
   };
@@ -68,6 +69,7 @@ class NearObstacle {
   void look_at_bound(Item item);
   void look_at_vertex(Item item);
   void wait(Item item, double clearance, double stretch);
+  void wait_turning(Item item, double clearance, const surface::NearSurface& surface);
 
   const OrganRange& organ_;
   surface::Body& body_;
@@ -76,10 +78,12 @@ class NearObstacle {
   std::optional<std::uint32_t> version_;  ///< of the cuts, that parts_ are of
   Vec3Array position_;                    ///< of the organ's spheres in the last round [m]
   double path_ = 0;                       ///< sum over the rounds of how far the farthest of them moved [m]
+  double step_ = 0;                       ///< part of it that the last round added [m]
   std::uint32_t round_ = 0;               ///< number of rounds
   std::vector<Part> parts_;
   std::vector<Region> regions_;
   std::vector<double> due_at_;  ///< of each region: nothing of it is due while path_ is shorter [m]
+  std::vector<Item> turning_;   ///< vertices that move as their tissue turns, by path_; heap
   std::vector<Item> always_;    ///< due in every round
   std::vector<Item> due_;       ///< in this one
   std::vector<Found> found_;

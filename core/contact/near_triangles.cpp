@@ -23,6 +23,12 @@ Reach Reach::grown(double by) const {
   return wider;
 }
 
+Reach Reach::moved(Vec3 by) const {
+  Reach there = *this;
+  there.box = box.moved(Box(by)), there.centre += by;
+  return there;
+}
+
 double Reach::beyond(const Reach& other) const {
   const Vec3 low = other.box.low - box.low, high = box.high - other.box.high;
   const double far = std::isinf(other.farthest) ? 0 : norm(centre - other.centre) + farthest - other.farthest;
@@ -87,21 +93,23 @@ void NearTriangles::find(const Reach& reach, double margin, const Vec3Array& pos
   for (const BallPart& part : std::span(parts_).subspan(whole_)) cuts_.begin(*part.patch);
 }
 
-/// Adds to the paths how far the ball and the spheres have come since the last round.
+/// Adds to the paths how far the reach and the spheres, seen from the ball, have come since the last round.
 void NearTriangles::follow(const Reach& reach, const Vec3Array& position) {
-  const double by = reach.beyond(reach_);
-  ball_path_ += by, all_path_ += by + stretch_ * farthest_moved(position_, position);
+  const Vec3 by = reach.centre - reach_.centre;
+  const double grown = reach.beyond(reach_.moved(by));
+  grown_ += grown, all_path_ += grown + stretch_ * farthest_moved(position_, position, 0, by);
   reach_ = reach, position_ = position;
   if (all_path_ < kLongestPath) return;
-  ball_path_ = all_path_ = 0;
-  for (Group& group : groups_) group.allowed = -1, group.used = group.ball_path = group.all_path = 0;
+  grown_ = all_path_ = 0;
+  for (Group& group : groups_) group.allowed = -1, group.used = group.grown = group.all_path = 0;
 }
 
 /// Brings up to date how much of what is allowed a group has used.
 double NearTriangles::find_used(Group& group) {
-  const double farthest = group.spheres.farthest_moved(position_, [](Vec3 by) { return norm(by); });
+  const Vec3 ball = reach_.centre - std::exchange(group.centre, reach_.centre);
+  const double farthest = group.spheres.farthest_moved(position_, [&](Vec3 by) { return norm(by - ball); });
   const double stretch = 1 + 2 * all_[group.part].surface->groups()[group.number].widen;
-  group.used += ball_path_ - std::exchange(group.ball_path, ball_path_) + stretch * farthest;
+  group.used += grown_ - std::exchange(group.grown, grown_) + stretch * farthest;
   group.all_path = all_path_;
   return group.used;
 }
@@ -118,11 +126,9 @@ std::size_t NearTriangles::look_at(Group& group, const Reach& reach, double marg
   group.allowed = margin;
   const Reach around = reach.grown(margin + kRounding);
   std::size_t visited = 0;
-  surface.near(around, group.number, [&](const surface::NearSurface::Triangle& triangle, const Vec3* corners) {
+  surface.near_of_group(around, group.number, [&](const surface::NearSurface::Triangle& triangle) {
     ++visited;
-    double turns = 0;
-    for (const std::int32_t corner : triangle.corner) turns = std::max(turns, 2 * surface.offset_size(corner));
-    if (around.meets(Box(corners[0], corners[1], corners[2]).grown(turns))) group.found.push_back(&triangle);
+    if (around.meets(surface.around(triangle))) group.found.push_back(&triangle);
   });
   return visited;
 }

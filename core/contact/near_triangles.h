@@ -29,6 +29,7 @@ struct Reach {
   }
   bool meets(const Box& other) const { return box.meets(other) && gap(other, Box(centre)) <= farthest; }
   Reach grown(double by) const;
+  Reach moved(Vec3 by) const;
   /// By how much `other` would have to grow to contain it [m].
   double beyond(const Reach& other) const;
   /// By how much it may grow until it meets a box, which does not move [m]; not positive if they meet.
@@ -52,9 +53,9 @@ struct BallPart {
 
 /// The triangles of organs and of their cuts that a ball may touch. They are looked for with a margin, group by group,
 /// and again only when the ball and the spheres that the group follows may have come farther than that (as in the
-/// neighbour lists of Verlet, Phys. Rev. 159, 98, 1967). Groups of which the margin is half used up are looked at
-/// before that, a few in each round, so that no round bears all of them. Only what cannot be touched is left out: when
-/// they were looked for changes no result.
+/// neighbour lists of Verlet, Phys. Rev. 159, 98, 1967), seen from the ball: what it pushes along stays near. Groups of
+/// which the margin is half used up are looked at before that, a few in each round, so that no round bears all of them.
+/// Only what cannot be touched is left out: when they were looked for changes no result.
 class NearTriangles {
  public:
   struct Found {
@@ -79,8 +80,9 @@ class NearTriangles {
     std::size_t part, number;  ///< in all_, and of its surface
     WatchedSpheres spheres{};  ///< that it follows, as of when `used` was last found
     double allowed = -1;       ///< nothing is missing while no more than this is used [m]
-    double used = 0;           ///< of it, until the ball and all spheres had come so far: [m]
-    double ball_path = 0, all_path = 0;
+    double used = 0;           ///< of it, until the ball was there and all had come so far: [m]
+    Vec3 centre{};
+    double grown = 0, all_path = 0;
     std::vector<const surface::NearSurface::Triangle*> found{};
   };
 
@@ -101,7 +103,7 @@ class NearTriangles {
   double stretch_ = 1;                    ///< a vertex moves at most so many times as far as the farthest sphere
   Reach reach_{Vec3{}, 0};                ///< in the last round
   Vec3Array position_;                    ///< of the spheres in it [m]
-  double ball_path_ = 0;                  ///< sum of how far the reach went beyond that of the round before [m]
+  double grown_ = 0;                      ///< sum of how far the reach, seen from the ball, grew in each round [m]
   double all_path_ = 0;                   ///< the same, and of how far the vertices of the farthest sphere moved [m]
   std::vector<BallPart> parts_;           ///< those of whole organs, and patches of which something was found
   std::vector<Found> found_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -64,7 +65,8 @@ void NearSurface::find_bounds(Index triangles_per_patch) {
   if (vertex_count() == 0) return;
   find_places_in_spheres();
   position_.resize(spheres_.size()), moved_.resize(spheres_.size());
-  placed_.resize(vertex_count()), placed_in_.assign(vertex_count(), 0);
+  carried_.resize(vertex_count()), carried_in_.assign(vertex_count(), 0);
+  if (!offset_size_.empty()) placed_.resize(vertex_count()), placed_in_.assign(vertex_count(), 0);
   if (triangles_.empty()) return;
   sort_triangles();
   const auto count = Index(triangles_.size());
@@ -114,7 +116,7 @@ void NearSurface::add_turned(const SurfaceBinding& binding, const OrganRange& or
   turned_ = binding.turned, frame_ = binding.frame;
   for (TissueFrame& frame : frame_)
     for (Index& sphere : frame.sphere) sphere += organ.first;
-  turn_.resize(frame_.size()), turn_in_.assign(frame_.size(), 0);
+  frame_turned_.resize(frame_.size());
   first_turned_.assign(vertex_count() + 1, 0);
   offset_size_.assign(vertex_count(), 0);
   for (const TurnedOffset& offset : turned_) {
@@ -216,22 +218,61 @@ Box NearSurface::displacements(const Bound& bound) const {
   return widened(range, bound.widen, bound.turned);
 }
 
-Vec3 NearSurface::place(Index vertex) {
+Vec3 NearSurface::carried(Index vertex) {
   const auto v = std::size_t(vertex);
-  if (placed_in_[v] == round_) return placed_[v];
-  placed_in_[v] = round_;
+  if (std::exchange(carried_in_[v], round_) == round_) return carried_[v];
+  Vec3 sum;
+  for (auto e = std::size_t(first_[v]); e < std::size_t(first_[v + 1]); ++e)
+    sum += weight_[e] * position_[std::size_t(in_spheres_[e])];
+  return carried_[v] = sum;
+}
+
+Box NearSurface::around(const Triangle& triangle) {
+  const auto around_corner = [&](Index vertex) { return Box(carried(vertex)).grown(offset_size(vertex)); };
+  Box box = around_corner(triangle.corner[0]);
+  for (const Index corner : {triangle.corner[1], triangle.corner[2]}) {
+    const Box other = around_corner(corner);
+    box.add(other.low), box.add(other.high);
+  }
+  return box;
+}
+
+Vec3 NearSurface::place(Index vertex) {
+  if (offset_size(vertex) == 0) return carried(vertex);
+  const auto v = std::size_t(vertex);
+  if (std::exchange(placed_in_[v], round_) == round_) return placed_[v];
   return placed_[v] = carried(vertex) + offset(vertex);
+}
+
+double NearSurface::stretch(Index vertex) const {
+  double sum = 0;
+  for (const double weight : follower(vertex).weight) sum += std::abs(weight);
+  return sum;
+}
+
+NearSurface::Turned& NearSurface::turned(Index frame) const {
+  Turned& turned = frame_turned_[std::size_t(frame)];
+  if (std::exchange(turned.round, round_) == round_) return turned;
+  turned.moment = moment_of(frame_[std::size_t(frame)], [&](Index sphere) { return position_[std::size_t(sphere)]; });
+  turned.turn = turn_of(turned.moment);
+  return turned;
 }
 
 Vec3 NearSurface::offset(Index vertex) const {
   Vec3 sum;
-  for (const TurnedOffset& offset : turned_of(vertex)) {
-    const auto f = std::size_t(offset.frame);
-    if (std::exchange(turn_in_[f], round_) != round_)
-      turn_[f] = turn_of(frame_[f], [&](Index sphere) { return position_[std::size_t(sphere)]; });
-    sum += turn_[f](offset.offset);
-  }
+  for (const TurnedOffset& offset : turned_of(vertex)) sum += turned(offset.frame).turn(offset.offset);
   return sum;
+}
+
+TurnBound NearSurface::offset_bound(Index vertex) const {
+  TurnBound all{0, std::numeric_limits<double>::infinity()};
+  for (const TurnedOffset& offset : turned_of(vertex)) {
+    Turned& frame = turned(offset.frame);
+    if (std::exchange(frame.bound_round, round_) != round_)
+      frame.bound = bound_turn(frame_[std::size_t(offset.frame)], frame.moment);
+    all.rate += frame.bound.rate * norm(offset.offset), all.reach = std::min(all.reach, frame.bound.reach);
+  }
+  return all;
 }
 
 }  // namespace ctpm::surface

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -99,27 +100,29 @@ class NearSurface {
   }
   /// A vertex moves at most so many times as far as the farthest of its spheres.
   double stretch() const { return 1 + 2 * widen_; }
+  double stretch(Index vertex) const;
   /// Where a vertex is [m].
   Vec3 place(Index vertex);
   /// What turns with its spheres and is in no weight [m].
   Vec3 offset(Index vertex) const;
   /// It is at most so long, however the spheres turn [m].
   double offset_size(Index vertex) const { return offset_size_.empty() ? 0 : offset_size_[std::size_t(vertex)]; }
+  /// While no sphere moves farther than `reach` from where the present round has it [m], the offset moves by no more
+  /// than `rate` times as far as the farthest one.
+  TurnBound offset_bound(Index vertex) const;
   /// Where a vertex would be without it [m].
-  Vec3 carried(Index vertex) const {
-    Vec3 sum;
-    for (auto e = std::size_t(first_[std::size_t(vertex)]); e < std::size_t(first_[std::size_t(vertex) + 1]); ++e)
-      sum += weight_[e] * position_[std::size_t(in_spheres_[e])];
-    return sum;
-  }
+  Vec3 carried(Index vertex);
+  /// A box that contains a triangle, however the spheres turn [m].
+  Box around(const Triangle& triangle);
 
-  /// Calls `visit(triangle, corners)` for every triangle whose patch may meet `region`, with the positions of its
-  /// corners, in a fixed order. `region`: anything with `meets(Box)`.
+  /// Calls `visit(triangle, corners)` for every triangle that may meet `region`, and others of its patch, with the
+  /// positions of its corners, in a fixed order. `region`: anything with `meets(Box)`.
   template <class Region, class Visit>
   void near(const Region& region, Visit&& visit);
-  /// The same for one of the groups, of which near() visits one after another.
+  /// Calls `visit(triangle)` for every triangle of one of the groups whose patch may meet `region`, in the order in
+  /// which near() visits one group after another.
   template <class Region, class Visit>
-  void near(const Region& region, std::size_t group, Visit&& visit);
+  void near_of_group(const Region& region, std::size_t group, Visit&& visit);
 
  private:
   /// Where a patch or group is.
@@ -127,6 +130,14 @@ class NearSurface {
     std::uint32_t round = 0;  ///< in which it was found
     Box box{Vec3{}};          ///< [m]
   };
+  /// How a frame has turned, if it was asked for.
+  struct Turned {
+    std::uint32_t round = 0, bound_round = 0;  ///< in which it was found, and its bound
+    std::array<double, 9> moment{};
+    Turn turn;
+    TurnBound bound;
+  };
+  Turned& turned(Index frame) const;
   const Box& place_of(const Bound& bound, Place& place) const {
     if (place.round != round_) place = {round_, bound.rest.moved(displacements(bound))};
     return place.box;
@@ -156,8 +167,7 @@ class NearSurface {
   std::vector<Index> first_turned_;    ///< of each vertex, and their number; empty if no vertex has any
   std::vector<double> offset_size_;    ///< of each vertex; empty as the last one [m]
   std::vector<TissueFrame> frame_;     ///< their spheres are places in spheres_
-  mutable std::vector<Turn> turn_;     ///< how each frame has turned, if it was asked for
-  mutable std::vector<std::uint32_t> turn_in_;      ///< round in which it was found
+  mutable std::vector<Turned> frame_turned_;
   std::vector<Index> own_sphere_, own_in_spheres_;  ///< what the spans show where it is not the Model's
   std::vector<double> own_weight_;
   std::vector<Vec3> own_rest_;
@@ -170,29 +180,32 @@ class NearSurface {
   std::vector<Vec3> position_;          ///< of spheres_ in the present round [m]
   mutable std::vector<Vec3> moved_;     ///< how far they are from rest, if bounds were asked for [m]
   mutable Box displacements_{Vec3{}};
-  mutable std::uint32_t moved_in_ = 0;    ///< round in which moved_ and displacements_ were found
-  std::vector<Vec3> placed_;              ///< positions of the vertices that the present round placed [m]
-  std::vector<std::uint32_t> placed_in_;  ///< round that placed a vertex
+  mutable std::uint32_t moved_in_ = 0;     ///< round in which moved_ and displacements_ were found
+  std::vector<Vec3> carried_;              ///< where the vertices are that the present round asked for, unturned [m]
+  std::vector<std::uint32_t> carried_in_;  ///< round that asked for a vertex
+  std::vector<Vec3> placed_;               ///< the same, turned; both are empty if none turns
+  std::vector<std::uint32_t> placed_in_;
   std::uint32_t round_ = 0;
 };
 
 template <class Region, class Visit>
 void NearSurface::near(const Region& region, Visit&& visit) {
-  for (std::size_t group = 0; group < groups_.size(); ++group) near(region, group, visit);
+  const auto look_at = [&](const Triangle& triangle) {
+    if (!offset_size_.empty() && !region.meets(around(triangle))) return;  // to turn costs more
+    const Vec3 corners[3] = {place(triangle.corner[0]), place(triangle.corner[1]), place(triangle.corner[2])};
+    visit(triangle, corners);
+  };
+  for (std::size_t group = 0; group < groups_.size(); ++group) near_of_group(region, group, look_at);
 }
 
 template <class Region, class Visit>
-void NearSurface::near(const Region& region, std::size_t group, Visit&& visit) {
+void NearSurface::near_of_group(const Region& region, std::size_t group, Visit&& visit) {
   const Bound& bound = groups_[group];
   if (!region.meets(bound.rest.moved(displacements())) || !region.meets(place_of(bound, group_places_[group]))) return;
   for (Index p = bound.first; p < bound.last; ++p) {
     const Bound& patch = patches_[std::size_t(p)];
     if (!region.meets(place_of(patch, patch_places_[std::size_t(p)]))) continue;
-    for (Index t = patch.first; t < patch.last; ++t) {
-      const Triangle& triangle = triangles_[std::size_t(t)];
-      const Vec3 corners[3] = {place(triangle.corner[0]), place(triangle.corner[1]), place(triangle.corner[2])};
-      visit(triangle, corners);
-    }
+    for (Index t = patch.first; t < patch.last; ++t) visit(triangles_[std::size_t(t)]);
   }
 }
 

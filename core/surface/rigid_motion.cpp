@@ -1,6 +1,9 @@
 #include "core/surface/rigid_motion.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace ctpm::surface {
 namespace {
@@ -18,6 +21,16 @@ double size_squared(const Matrix& m) {
   double sum = 0;
   for (const double entry : m) sum += entry * entry;
   return sum;
+}
+
+/// Cofactors of a moment that are smaller than this, to the square of its size, count as those of a line.
+constexpr double kLine = 1e-3;
+
+/// A moment to which, where it is one of a plane, the normal is added: there the cofactors are the outer product of the
+/// plane's normals now and at rest. `cofactor`: of the moment; `plane`: its size.
+Matrix with_normal(Matrix moment, const Matrix& cofactor, double plane) {
+  for (std::size_t k = 0; k < 9; ++k) moment[k] += cofactor[k] / std::sqrt(plane);
+  return moment;
 }
 
 /// The rotation nearest to `m`; none if `m` is nearly singular or turns space inside out.
@@ -65,17 +78,11 @@ void add_moment(Matrix& moment, Vec3 now, Vec3 rest) {
 }
 
 Turn turn_of(const Matrix& moment) {
-  constexpr double kLine = 1e-3;  // cofactors of a matrix that counts as one of rank 1, to the square of its size
   const double squared = size_squared(moment);
   if (!(squared > 0)) return {};
   const Matrix cofactor = cofactors(moment).first;
   const double plane = std::sqrt(size_squared(cofactor));
-  if (plane > kLine * squared) {
-    // In a plane the cofactors are the outer product of its normals now and at rest.
-    Matrix full = moment;
-    for (std::size_t k = 0; k < 9; ++k) full[k] += cofactor[k] / std::sqrt(plane);
-    return {nearest_rotation(full)};
-  }
+  if (plane > kLine * squared) return {nearest_rotation(with_normal(moment, cofactor, plane))};
   const Vec3 column[3] = {
       {moment[0], moment[3], moment[6]}, {moment[1], moment[4], moment[7]}, {moment[2], moment[5], moment[8]}};
   Vec3 to = column[0];
@@ -89,6 +96,31 @@ Turn turn_of(const Matrix& moment) {
     turn.entry[a] = v.x, turn.entry[3 + a] = v.y, turn.entry[6 + a] = v.z;
   }
   return turn;
+}
+
+TurnBound bound_turn(const TissueFrame& frame, const Matrix& moment) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  constexpr double kFlat = 1e-4;  // determinant of a matrix that is far from singular, to the cube of its size
+  // The moment changes by no more than `arms` times how far the farthest sphere moves.
+  double arms = 0;
+  Vec3 mean;
+  for (std::size_t i = 0; i < frame.arm.size(); ++i)
+    arms += frame.weight[i] * norm(frame.arm[i]), mean += frame.weight[i] * frame.arm[i];
+  arms += norm(mean);
+  if (!(arms > 0)) return {0, kInfinite};
+  const Matrix cofactor = cofactors(moment).first;
+  const double size = std::sqrt(size_squared(moment)), plane = std::sqrt(size_squared(cofactor));
+  if (!(plane > 4 * kLine * size * size)) return {};
+  const Matrix full = with_normal(moment, cofactor, plane);
+  const auto [of_full, determinant] = cofactors(full);
+  const double whole = std::sqrt(size_squared(full));
+  if (!(determinant > kFlat * whole * whole * whole)) return {};
+  const double least = determinant / std::sqrt(size_squared(of_full));  // no singular value is smaller
+  // While the moment changes by a tenth of its size or less, the cofactors change by 2.1 sizes times that; while they
+  // change by half of theirs or less, what is added changes by their change over the root of that half.
+  const double of_cofactors = 2.1 * size, of_whole = 1 + of_cofactors / std::sqrt(0.5 * plane);
+  const double change = std::min({0.1 * size, 0.5 * plane / of_cofactors, 0.5 * least / of_whole});
+  return {2 / 1.5 * of_whole / least * arms, change / arms};
 }
 
 RigidMotion rigid_motion(const Model& model, std::span<const std::int32_t> spheres, const Vec3Array& position) {

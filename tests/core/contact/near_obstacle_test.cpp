@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -144,6 +145,78 @@ TEST(NearObstacle, FindsThoseOfACutInsideABox) {
 TEST(NearObstacle, FindsThoseOfAThinStripThatTurnsOver) {
   const Model model = block();
   expect_all_found(model, above(ObstacleKind::plane), thin_strip(model), 0.01);
+}
+
+TEST(NearObstacle, FindsThoseOfAThinStripThatTurnsSlowlyIntoAPlane) {
+  Model model = block();
+  model.obstacles = {above(ObstacleKind::plane, {}, 0.001)};
+  contact::CutSurfaces cuts(model);
+  std::vector<surface::Body> bodies = surface::bodies_of(model), others = surface::bodies_of(model);
+  const surface::ObstacleShape shape(model.obstacles[0]);
+  NearObstacle near(model, bodies[0], shape, cuts);
+  State state = thin_strip(model);
+  const Vec3Array rest = state.position;
+  std::size_t first = 0, last = 0;
+  for (int tick = 0; tick <= 4000; ++tick) {
+    const double half = 0.5 * 5e-5 * tick;
+    const Quat over{std::cos(half), std::sin(half), 0, 0};
+    for (std::size_t i = 0; i < rest.size(); ++i) state.position.set(i, kMiddle + rotate(over, rest[i] - kMiddle));
+    cuts.begin_tick(state, false), cuts.begin(state.position);
+    bodies[0].surface.begin(state.position), others[0].surface.begin(state.position);
+    (void)cuts.wait_near(Box(Vec3{-1, -1, -1}, Vec3{1, 1, 1}), state, bodies[0].surface);
+    const std::vector<Seen> seen = found(near, state.position);
+    if (tick % 10 != 0) continue;
+    ASSERT_EQ(seen, all_inside(others[0], cuts, shape)) << "tick " << tick;
+    if (tick == 0) first = seen.size();
+    last = seen.size();
+  }
+  EXPECT_EQ(first, 0u);
+  EXPECT_GT(last, 40u);
+}
+
+TEST(NearSurface, AnOffsetMovesNoFartherThanItsBound) {
+  Model model = block();
+  model.obstacles = {above(ObstacleKind::plane)};
+  State state = thin_strip(model);
+  contact::CutSurfaces cuts(model);
+  cuts.begin_tick(state, false), cuts.begin(state.position);
+  std::vector<surface::Body> bodies = surface::bodies_of(model);
+  bodies[0].surface.begin(state.position);
+  const Box everywhere(Vec3{-1, -1, -1}, Vec3{1, 1, 1});
+  (void)cuts.wait_near(everywhere, state, bodies[0].surface);
+  std::mt19937 bits(1);
+  std::uniform_real_distribution<double> number(-1, 1);
+  int bounded = 0;
+  double most = 0;
+  cuts.near(0, everywhere, [&](cutbody::CutPatch& patch) {
+    surface::NearSurface& surface = patch.body.surface;
+    for (std::int32_t vertex = 0; vertex < std::int32_t(surface.vertex_count()); vertex += 7) {
+      surface.begin(state.position);
+      if (!(surface.offset_size(vertex) > 0)) continue;
+      const surface::TurnBound bound = surface.offset_bound(vertex);
+      const Vec3 before = surface.offset(vertex);
+      const double reach = std::min(bound.reach, 1e-3);
+      bounded += bound.rate > 0 && bound.reach > 0;
+      // Spheres that move each on its own, or about the vertex.
+      const Vec3 at = surface.place(vertex), turn{number(bits), number(bits), number(bits)};
+      Vec3Array moves(state.position.size());
+      double most_moved = 0;
+      for (std::size_t i = 0; i < moves.size(); ++i) {
+        const Vec3 own{number(bits), number(bits), number(bits)}, arm = state.position[i] - at;
+        const Vec3 about = norm(arm) < 0.012 ? cross(turn, arm) : Vec3{};
+        moves.set(i, vertex % 2 == 0 ? own : about);
+        most_moved = std::max(most_moved, norm(moves[i]));
+      }
+      Vec3Array moved = state.position;
+      for (std::size_t i = 0; i < moved.size(); ++i) moved.set(i, moved[i] + reach / most_moved * moves[i]);
+      surface.begin(moved);
+      const double by = norm(surface.offset(vertex) - before);
+      ASSERT_LE(by, bound.rate * reach + 1e-12) << vertex;
+      if (bound.rate > 0) most = std::max(most, by / (bound.rate * reach));
+    }
+  });
+  EXPECT_GT(bounded, 20);
+  EXPECT_GT(most, 0.02) << "it says something";
 }
 
 TEST(NearObstacle, FindsThoseOfAPartThatMovesWhileAllElseRests) {
