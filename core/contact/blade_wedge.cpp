@@ -6,9 +6,13 @@
 namespace ctpm::contact {
 namespace {
 
-/// Pressure of the springs per closing of the faces, in moduli of the tissue per spacing (our choice): so stiff that
-/// the tissue closes the blade's width by some percent, and not so stiff that the solve suffers.
-constexpr double kStiffness = 40;
+/// Where they press with the tissue's modulus, the springs yield by so much (our choice): so little that tissue closes
+/// the blade's width by some percent on any lattice, and not so little that the solve suffers [m].
+constexpr double kYields = 0.06e-3;
+
+/// Pressure of tissue that opens, in moduli per opening in spacings (our choice): about what the elements of a lattice
+/// show, so that the energy of springs that are softer rises evenly on a blade's way in.
+constexpr double kTissue = 40;
 
 /// Faces that pass through each other farther than this are pushed apart no harder (our choice) [spacings].
 constexpr double kMostClosed = 0.5;
@@ -50,7 +54,11 @@ Vec3 BladeWedge::press(const StateView& state, const cutting::CutFront& front, c
   const auto resolved = [&](double distance) { return std::clamp(2 * distance / organ.spacing, 0.0, 1.0); };
   const double share = organ.modulus > 0 ? resolved(behind) * resolved(flank.along - behind) : 0.0;
   const Vec3 rest = flank.rest + behind * flank.rest_back;
-  const double in_tissue = share > 0 ? front.in_tissue(flank.organ, rest) : 0.0;
+  // As deep as both the place and the edge before it: the springs go before the edge leaves the tissue.
+  const auto in_at = [&](Vec3 by) {
+    return front.in_tissue(flank.organ, rest + by) * front.in_tissue(flank.organ, flank.rest + by);
+  };
+  const double in_tissue = share > 0 ? in_at({}) : 0.0;
   if (!(in_tissue > 0)) return {};
   const double in_cut = front.in_cut(flank.organ, rest);
   if (!(in_cut > 0)) return {};
@@ -67,20 +75,18 @@ Vec3 BladeWedge::press(const StateView& state, const cutting::CutFront& front, c
   const double closed =
       std::min(local_thickness(flank.tool, behind) - opening.jump(off_cut), kMostClosed * organ.spacing);
   if (!(closed > 0)) return {};
-  const double whole = kStiffness * organ.modulus / organ.spacing * share * in_cut * opening.whole * flank.width *
-                       flank.height / flank.rows;
-  const double k = in_tissue * whole;
+  const double area = share * in_cut * opening.whole * flank.width * flank.height / flank.rows;
+  const double whole = organ.modulus / kYields * area, entry = kTissue * organ.modulus / organ.spacing * area;
+  const double k = 1 / (1 / whole + (1 / in_tissue - 1) / entry);
   contacts.add({.axis = across, .force = k * closed * across, .k = k, .only_pushes = true}, carriers);
 
   // What the energy k / 2 closed^2 changes by while the blade moves along its flanks.
   const Vec3 change = opening.change(off_cut);
   const auto force_along = [&](Vec3 move) {
     double deeper = 0;
-    if (in_tissue < 1)
-      deeper =
-          (front.in_tissue(flank.organ, rest + kNudge * move) - front.in_tissue(flank.organ, rest - kNudge * move)) /
-          (2 * kNudge);
-    return 0.5 * whole * deeper * closed * closed - k * closed * dot(change, move);
+    if (in_tissue < 1) deeper = (in_at(kNudge * move) - in_at(-kNudge * move)) / (2 * kNudge);
+    const double stiffer = (k / in_tissue) * (k / in_tissue) / entry * deeper;
+    return 0.5 * stiffer * closed * closed - k * closed * dot(change, move);
   };
   return force_along(flank.rest_up) * flank.up + force_along(flank.rest_back) * flank.back;
 }

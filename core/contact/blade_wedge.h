@@ -14,8 +14,9 @@ inline constexpr double kBevel = 2.5;
 /// The wedge that a blade is. Where it stands in a cut, the two faces of the cut stay apart by the blade's local
 /// thickness: at places on its flanks, some behind each node of the edge, a spring pushes the faces apart where they
 /// are closer (cutting::Opening). Within half a spacing of the edge and of the point the lattice cannot tell the faces
-/// from the whole tissue beyond, and the springs are the softer the nearer they are. What pushes the faces apart are
-/// opposite forces on the spheres of both sides; the blade may lie anywhere between the faces.
+/// from the whole tissue beyond, and the springs are the softer the nearer they are, as within 2 mm of where they come
+/// into the tissue and of where the edge leaves it. What pushes the faces apart are opposite forces on the spheres of
+/// both sides; the blade may lie anywhere between the faces.
 ///
 /// The energy of the springs depends on the tissue and on where in it the blade is. The blade feels the change with the
 /// latter: faces that open along its way hold it back, and faces that close behind it push it on. So it pays for what

@@ -140,9 +140,9 @@ Chapter chapter_of(const BladeResult& result) {
       "A block of 72 x 72 x 36 mm, held below and at its sides. A blade of 50 mm goes through it at 30 mm/s, 20 mm "
       "deep. The hand's work should be the toughness times the area of the cut, which is measured on the surface that "
       "the edge swept, and what the tissue's Kelvin units dissipate. What severed elements held is lost, too, and only "
-      "shown. The opening is that beside the middle of the flanks, halfway down, over the blade's thickness, 0.4 mm: a "
-      "lattice that does not resolve the flanks has less, and tough tissue, which the edge pulls along, gapes wider by "
-      "itself. Force, chatter (RMS about a moving mean of 6 mm) and the largest change in one tick are read over the "
+      "shown. The opening is that beside the middle of the flanks, halfway down, over the blade's thickness, 0.4 mm: "
+      "tough tissue, which the edge pulls along, gapes wider by itself. Force, chatter (RMS about a moving mean of 6 "
+      "mm) and the largest change in one tick are read over the "
       "middle 30 mm."};
   reports::Table table;
   table.columns = {{"radius_mm", "r [mm]"},

@@ -332,6 +332,15 @@ inline constexpr GoldenRow kGoldenRevision21[] = {
     {"fine mesh, sdirk2", {0xfbc106aac38946d1, 0x970261862069dfd3, 0x416142254c0f4879, 0xc1e7799b03e2deae}},
 };
 
+inline constexpr GoldenRow kGoldenRevision22[] = {
+    {"wedge, sdirk2", {0x6ea36172c291d416, 0x28c7a22f71fa0d6e, 0x86be6848636bf6e0, 0x66dc76c9ebb3b1e1}},
+    {"crumbs, sdirk2", {0x99b04d0562fdfad0, 0x8d4ee668492e3f6d, 0xa8761dc2125f48e6, 0xcf382d4d83d89c8e}},
+    {"light, backward-euler", {0xd3d3d238bbc81e70, 0xd3b269e181b3410a, 0x1bafd5a461230ef4, 0x4a28133bd875b6a9}},
+    {"light, sdirk2", {0x3e3014ff5c07bebd, 0x61d4a96c854a89ea, 0xc457b8cd0cfb9178, 0xf0638a105ec3bc21}},
+    {"wedge, auto", {0xb6c71a93224b3c05, 0x532dc5c79cc197c6, 0x4c5f77ec8a764b8d, 0x5207a4cf9966e10a}},
+    {"crumbs, auto", {0x7dbfc1a5b048509e, 0x087432173b042b76, 0x806836eb3478b758, 0x6293285d0784acc4}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},   {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189},   {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
@@ -343,7 +352,7 @@ inline constexpr GoldenRevision kGoldenRevisions[] = {
     {15, kGoldenRevision15, 0xc7644e74b0d461e5}, {16, kGoldenRevision16, 0x304838863b606220},
     {17, kGoldenRevision17, 0x47d495b0831911b},  {18, kGoldenRevision18, 0x519dbe9952522cb},
     {19, kGoldenRevision19, 0xbcff56bc1d9b0f37}, {20, kGoldenRevision20, 0xc16065d9ee0c4396},
-    {21, kGoldenRevision21, 0x369412ffb9ec0589},
+    {21, kGoldenRevision21, 0x369412ffb9ec0589}, {22, kGoldenRevision22, 0x3fb5c7dfb63a9f52},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

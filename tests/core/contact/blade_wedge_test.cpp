@@ -177,17 +177,14 @@ std::vector<double> force_in_and_out(double thickness) {
 TEST(BladeWedge, TheForceDoesNotJumpForTheWidthWhereTheBladeEntersStopsAndLeaves) {
   const std::vector<double> thick = force_in_and_out(kThickness), thin = force_in_and_out(1e-9);
   const auto most = *std::max_element(thick.begin(), thick.end());
-  double added = 0, jump = 0, of_thick = 0, of_thin = 0;
+  double added = 0, jump = 0;
   for (std::size_t i = 1; i < thick.size(); ++i) {
     const double more = thick[i] - thin[i];
     added = std::max(added, std::abs(more));
-    of_thick = std::max(of_thick, std::abs(thick[i] - thick[i - 1]));
-    of_thin = std::max(of_thin, std::abs(thin[i] - thin[i - 1]));
-    if (i < 1800) jump = std::max(jump, std::abs(more - (thick[i - 1] - thin[i - 1])));
+    jump = std::max(jump, std::abs(more - (thick[i - 1] - thin[i - 1])));
   }
   EXPECT_GT(added, 0.02 * most);
-  EXPECT_LT(jump, 0.03 * most) << "while it is in the block";
-  EXPECT_LE(of_thick, of_thin) << "also where the edge leaves the block all at once";
+  EXPECT_LT(jump, 0.03 * most) << "also where the edge leaves the block all at once";
   EXPECT_EQ(thick.back(), 0);
 }
 
