@@ -26,6 +26,7 @@ Result<std::string> verify_session(Parameters& parameters, const CallContext& co
 Result<std::string> are_comparable(Parameters& parameters, const CallContext& context);
 Result<std::string> compare_sessions(Parameters& parameters, const CallContext& context);
 Result<std::string> name_export(Parameters& parameters, const CallContext& context);
+Result<std::string> export_moment(Parameters& parameters, const CallContext& context);
 Result<std::string> export_session(Parameters& parameters, const CallContext& context);
 Result<std::string> session_motion(Parameters& parameters, const CallContext& context);
 Result<std::string> begin_training(Parameters& parameters, const CallContext& context);

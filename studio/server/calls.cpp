@@ -23,6 +23,7 @@ constexpr std::pair<const char*, Call> kCalls[] = {
     {"session.compare", compare_sessions},
     {"session.export", export_session},
     {"session.export_name", name_export},
+    {"session.export_moment", export_moment},
     {"notes.read", read_notes},
     {"notes.write", write_notes},
     {"session.motion", session_motion},

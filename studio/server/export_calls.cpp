@@ -6,6 +6,7 @@
 #include "studio/film/expert_cut_of.h"
 #include "studio/film/export_video.h"
 #include "studio/film/sidecar.h"
+#include "studio/film/stills.h"
 #include "studio/output/json_writer.h"
 #include "studio/server/call_table.h"
 #include "studio/server/scene_text.h"
@@ -23,6 +24,20 @@ views::LookRequest look_of(Parameters& parameters) {
   look.cutaway = parameters.text_if("cutaway").value_or("");
   look.camera = parameters.text_if("camera").value_or("");
   return look;
+}
+
+/// What the picture of a film or of a moment is to be like.
+Result<Done> read_picture(Parameters& parameters, film::ExportOptions& options) {
+  const std::string size = parameters.text_if("size").value_or("1280x720");
+  options.look = look_of(parameters);
+  options.caption = parameters.text_if("caption").value_or("");
+  options.overlay = parameters.text_if("overlay").value_or(options.overlay);
+  options.allow_diverged = parameters.flag("allow_diverged", false);
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  const Result<render::PictureSize> parsed = render::parse_picture_size(size);
+  if (!parsed) return parsed.errors();
+  options.size = *parsed;
+  return Done{};
 }
 
 /// What lies where that video or its sidecar would be written; empty: nothing.
@@ -82,6 +97,23 @@ Result<std::string> name_export(Parameters& parameters, const CallContext& conte
   }
 }
 
+/// The picture of a moment, as `export --at-s` draws it.
+Result<std::string> export_moment(Parameters& parameters, const CallContext& context) {
+  const std::string path = parameters.text("path"), output = parameters.text("output");
+  const double at = parameters.number("at_s", 0, 1e9);
+  film::ExportOptions options;
+  if (!output.empty() && !output.ends_with(".png")) parameters.refuse("output", "the picture of a moment is a .png");
+  if (const Result<Done> read = read_picture(parameters, options); !read) return read.errors();
+  const Result<std::string> place = context.folder.place(output);
+  if (!place) return place.errors();
+  Result<recordings::SessionReader> reader = open_reader(context, path);
+  if (!reader) return reader.errors();
+  const Result<Done> written = film::write_still(*reader, *place, at, options);
+  if (!written) return written.errors();
+  if (context.films) context.films->add(*place);
+  return output::JsonWriter().begin_object().member("path", std::string_view(output)).end_object().text();
+}
+
 Result<std::string> export_session(Parameters& parameters, const CallContext& context) {
   const std::string path = parameters.text("path"), output = parameters.text("output");
   const std::string beside = parameters.text_if("beside").value_or("");
@@ -90,20 +122,12 @@ Result<std::string> export_session(Parameters& parameters, const CallContext& co
   const bool has_expert_line = parameters.flag("expert_line", true);
   if (!beside.empty() && !ghost.empty()) parameters.refuse("ghost", "a video has a session beside it or a ghost");
   film::ExportOptions options;
-  const std::string size = parameters.text_if("size").value_or("1280x720");
   options.fps = parameters.number_if("fps", 1, 240).value_or(options.fps);
   options.speed = parameters.number_if("speed", 0.001, 1000).value_or(options.speed);
   options.range.from_s = parameters.number_if("from_s", 0, 1e9).value_or(0);
   options.range.to_s = parameters.number_if("to_s", 0, 1e9);
-  options.look = look_of(parameters);
   options.slow_at = parameters.text_if("slow_at").value_or("");
-  options.caption = parameters.text_if("caption").value_or("");
-  options.overlay = parameters.text_if("overlay").value_or(options.overlay);
-  options.allow_diverged = parameters.flag("allow_diverged", false);
-  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
-  const Result<render::PictureSize> parsed = render::parse_picture_size(size);
-  if (!parsed) return parsed.errors();
-  options.size = *parsed;
+  if (const Result<Done> read = read_picture(parameters, options); !read) return read.errors();
   const Result<std::string> place = context.folder.place(output);
   if (!place) return place.errors();
   if (const std::string file = in_the_way_of(*place); !file.empty())

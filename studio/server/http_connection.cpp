@@ -77,7 +77,10 @@ std::optional<std::string> name_behind(std::string_view begin, std::string_view 
 }
 
 std::string film_type(const std::string& path) {
-  return path.ends_with(".mp4") ? "video/mp4" : path.ends_with(".avi") ? "video/x-msvideo" : "application/octet-stream";
+  for (const auto& [ending, type] :
+       {std::pair{".mp4", "video/mp4"}, {".avi", "video/x-msvideo"}, {".png", "image/png"}})
+    if (path.ends_with(ending)) return type;
+  return "application/octet-stream";
 }
 
 /// What every response says: nobody keeps it, and only this server's own page may use it.

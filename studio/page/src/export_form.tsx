@@ -1,6 +1,7 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import { faultText } from "./compare";
 import type { Connection } from "./connection";
+import { download } from "./download";
 import { asSeen, isFree, type Look, lookParameters, lookWords } from "./look";
 import { Problems, Section, ShownCommand, Working } from "./parts";
 import type { Player } from "./player";
@@ -33,17 +34,7 @@ const kAligned: [string, string][] = [["path", "path of the tool, slowing one do
 const seenAlign = (player: Player, isGhost: boolean) => player.path ? "path" : player.offset === 0 ? "clock" : String(Number((isGhost ? -player.offset : player.offset).toFixed(6)));
 const kNoMoment = { name: "", fault: "" };
 const kNear = 2e-3; // of two times that are one moment [s]
-const kKept = 60000; // until a download has begun [ms]
 const kSlow: [string, string][] = [["cut", "cuts"], ["damage", "damage"], ["worst", "largest force and depth"]];
-
-/** Hands a film to its viewer, as a download. */
-async function download(connection: Connection, path: string): Promise<void> {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(await connection.film(path));
-  link.download = path.replace(/^.*\//, "");
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), kKept);
-}
 
 /** What a film is called unless something else is chosen: beside the session, a trainee's beside an expert's or with its ghost after
     both; around a moment, with that. */

@@ -15,6 +15,7 @@ import { Empty, Problems } from "./parts";
 import type { Place } from "./place";
 import { Player, type Track } from "./player";
 import type { ComparisonResult, Legend, Listing } from "./protocol";
+import { StillForm } from "./still_form";
 import { Clocks, ownTime } from "./time_axis";
 import { Timeline } from "./timeline";
 import { bytes } from "./text";
@@ -210,7 +211,12 @@ export function Review({ connection, listing, place, onPlace }: {
         onBeside={openBeside} onSwap={() => void swap()} />
     ),
     notes: <NotesPanel player={shown} notes={notes} />,
-    export: <ExportForm key={session.path} connection={connection} player={shown} look={look} comparison={comparison} job={exporting} />,
+    export: (
+      <>
+        {!second && <StillForm key={`still ${session.path}`} connection={connection} player={shown} look={look} />}
+        <ExportForm key={session.path} connection={connection} player={shown} look={look} comparison={comparison} job={exporting} />
+      </>
+    ),
   });
 
   return (

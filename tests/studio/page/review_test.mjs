@@ -341,6 +341,23 @@ step("views, cutaway and cameras are those of export", async () => {
   await page.click("#tab-moment");
 });
 
+step("a picture of the moment is the command's that is shown", async () => {
+  await page.click("#tab-export");
+  await page.click("button:has-text('Save a picture of')");
+  const said = await page.locator("#panel .good").first().innerText(), name = /^(kidney-cut-expert-[\d.]+s\.png) is written$/.exec(said)?.[1];
+  assert.ok(name, said);
+  const shown = await page.locator("#panel .command code").first().innerText();
+  assert.ok(shown.includes(`-o ${name} --at-s`), shown);
+  const again = ctpm(folder, ...shown.replace(name, "again.png").split(" ").slice(1));
+  assert.equal(again.code, 0, again.err);
+  assert.ok(readFileSync(join(folder, name)).equals(readFileSync(join(folder, "again.png"))));
+  const fetched = page.waitForEvent("download");
+  await page.click(`button:has-text('Download ${name}')`);
+  assert.equal((await fetched).suggestedFilename(), name);
+  await picture(page, "review-still");
+  assert.deepEqual(await seriousFindings(page), []);
+});
+
 step("it fits a desk, a large screen and a tablet", async () => {
   await page.click("#tab-export"); // the longest panel
   for (const [width, height] of [[1280, 720], [1920, 1080], [820, 1180]]) {

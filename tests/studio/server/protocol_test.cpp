@@ -79,6 +79,8 @@ TEST(Protocol, NoCallReachesAFileOutsideOfTheFolder) {
       {"session.export", "output", ".avi", {{"path", "own.ctpm"}, {"to_s", 0.1}}},
       {"session.export", "beside", ".ctpm", {{"path", "own.ctpm"}, {"output", "film.avi"}, {"to_s", 0.1}}},
       {"session.export", "ghost", ".ctpm", {{"path", "own.ctpm"}, {"output", "film.avi"}, {"to_s", 0.1}}},
+      {"session.export_moment", "path", ".ctpm", {{"output", "film.png"}, {"at_s", 0.1}}},
+      {"session.export_moment", "output", ".png", {{"path", "own.ctpm"}, {"at_s", 0.1}}},
       {"session.draw", "expert", ".ctpm", {{"stage", 0}}},
       {"notes.read", "path", ".ctpm", none},
       {"notes.write", "path", ".ctpm", {{"revision", "none"}, {"notes", nlohmann::json::array()}}},

@@ -284,6 +284,38 @@ TEST_F(Reviewing, OfTwoThatWriteNotesAtTheSameTimeOneIsRefused) {
   }
 }
 
+TEST_F(Reviewing, ThePictureOfAMomentIsTheCommands) {
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  const nlohmann::json request = {{"path", kCut},      {"output", "page.png"}, {"at_s", 2},
+                                  {"size", "320x180"}, {"cutaway", "y"},       {"caption", "a deep cut"}};
+  const nlohmann::json done = client.call("session.export_moment", request);
+  ASSERT_TRUE(done.contains("result")) << done;
+  EXPECT_EQ(done["result"]["path"], "page.png");
+  const testing::ProgramOutcome command =
+      testing::run_ctpm({"export", kCut, "-o", "command.png", "--at-s", "2", "--size", "320x180", "--cutaway", "y",
+                         "--caption", "a deep cut"},
+                        folder_.path());
+  ASSERT_EQ(command.code, 0) << command.err;
+  EXPECT_EQ(testing::slurp(file("page.png")), testing::slurp(file("command.png")));
+  const std::string fetched =
+      testing::response_to(serving.port(), serving.head("GET /film/page.png", serving.bearer()));
+  EXPECT_EQ(testing::body_of(fetched), testing::slurp(file("page.png")));
+  EXPECT_NE(fetched.find("Content-Type: image/png\r\n"), std::string::npos);
+  // Bad requests leave nothing behind.
+  for (const auto& [key, value, words] : {std::tuple{"output", nlohmann::json("page.png"), "exists"},
+                                          {"output", nlohmann::json("page.mp4"), ".png"},
+                                          {"at_s", nlohmann::json(1e6), "must be in"},
+                                          {"cutaway", nlohmann::json("w"), "cutaway"},
+                                          {"size", nlohmann::json("big"), "big"}}) {
+    nlohmann::json bad = request;
+    bad["output"] = "bad.png", bad[key] = value;
+    EXPECT_NE(client.call("session.export_moment", bad)["errors"].dump().find(words), std::string::npos) << bad;
+  }
+  EXPECT_FALSE(fs::exists(file("bad.png")));
+  EXPECT_FALSE(fs::exists(file("page.mp4")));
+}
+
 TEST_F(Reviewing, AnExportIsTheCommandsAndCanBeCancelled) {
   const Serving serving(folder_.path());
   SocketClient client(serving);
