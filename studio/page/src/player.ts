@@ -52,6 +52,7 @@ export class Player {
   pictureAfter: number | null = null; // time from the last move to its picture, a glimpse or not [ms]
   replayedAfter: number | null = null; // the same, to the replayed one [ms]
   path: [number, number][] | null = null; // times of both sessions that belong together; null: they differ by `offset` [s]
+  private left: Pick<Player, "offset" | "path" | "aligned"> | null = null; // how they were brought together, until a moment needed another way
   reached = 0; // speed of the playback in the last second
   onChange: () => void = () => {};
   onTime: () => void = () => {};
@@ -97,7 +98,7 @@ export class Player {
     if (first.status === "rejected") for (const stage of [1, 0]) this.close(stage); // the program still has the one before open
     else if (!first.value) return; // another one was opened meanwhile
     else {
-      this.path = null, this.aligned = "";
+      this.path = null, this.aligned = "", this.left = null;
       const hasBoth = second.status === "fulfilled" && second.value !== null;
       this.isPathWanted = hasBoth && align === "path";
       const isByEvent = hasBoth && (align === "contact" || align === "cut") && this.bringTogether(align);
@@ -169,7 +170,7 @@ export class Player {
     if (!this.tracks.delete(stage)) return;
     this.waiting.delete(stage), this.unanswered.delete(stage), this.unseen.delete(stage), this.asked.delete(stage), this.drawings.delete(stage);
     this.goOn();
-    if (stage === 1) this.path = null;
+    if (stage === 1) this.path = this.left = null;
     this.otherScene = "";
     this.viewer.isCovered = false;
     this.viewer.set(stage, null);
@@ -201,7 +202,7 @@ export class Player {
 
   /** Aligns both sessions where the tools were at the same place of the path. */
   alignAlong(path: [number, number][]): void {
-    this.path = path.length > 0 ? path : null;
+    this.path = path.length > 0 ? path : null, this.left = null;
     this.aligned = this.path ? "path" : "";
     this.move(this.time);
     this.onChange();
@@ -309,7 +310,7 @@ export class Player {
 
   /** As near to it as both sessions stay beside each other. */
   setOffset(offset: number): void {
-    this.offset = this.allowed(offset), this.path = null, this.aligned = "";
+    this.offset = this.allowed(offset), this.path = null, this.aligned = "", this.left = null;
     this.move(this.time);
     this.onChange();
   }
@@ -327,17 +328,23 @@ export class Player {
     const first = this.tracks.get(0), second = this.tracks.get(1), kind = kEventOf[event];
     const here = first ? firstOf(first.session.info, kind) : null, there = second ? firstOf(second.session.info, kind) : null;
     if (here === null || there === null) return false;
-    this.offset = there - here, this.path = null, this.aligned = event;
+    this.offset = there - here, this.path = null, this.aligned = event, this.left = null;
     return true;
   }
 
   /** Moves to a time of the session beside. Where the first one has nothing that belongs to it, both are brought together
       there, at the same place of the path. */
   moveBeside(time: number, { path_s }: ComparisonResult): void {
+    if (this.left) Object.assign(this, this.left, { left: null }); // each moment is seen as it would be before the others
     const here = this.firstAt(time), first = this.tracks.get(0)!.session.info.duration_s;
     const belongs = here >= 0 && here <= first && Math.abs(this.besideAt(here) - time) < kTogether;
-    if (!belongs && path_s.length > 0) this.setOffset(time - Math.min(Math.max(alongPath(path_s, time, 1), 0), first));
+    if (!belongs && path_s.length > 0) {
+      const { offset, path, aligned } = this;
+      this.setOffset(time - Math.min(Math.max(alongPath(path_s, time, 1), 0), first));
+      this.left = { offset, path, aligned };
+    }
     this.move(this.firstAt(time));
+    this.onChange();
   }
 
   play(): void {

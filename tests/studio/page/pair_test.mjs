@@ -138,6 +138,15 @@ step("two sessions beside each other, compared", async () => {
   await page.locator("#panel .jumps button").nth(late).click();
   await untilTrainee(Number.parseFloat(moments[late]));
   assert.ok((await clock()) <= expert.duration_s);
+  // Others are seen as they were before it, and it again as it was.
+  const own = await ahead(), early = moments.findIndex((moment) => Number.parseFloat(moment) > offset && Number.parseFloat(moment) - offset < expert.duration_s);
+  assert.notEqual(own, offset);
+  assert.ok(early >= 0);
+  for (const [moment, seen] of [[early, offset], [late, own]]) {
+    await page.locator("#panel .jumps button").nth(moment).click();
+    await untilTrainee(Number.parseFloat(moments[moment]));
+    assert.equal(await ahead(), seen, moments[moment]);
+  }
   // The command prints the same, and the program answers the same advice again.
   const printed = (await command).out;
   const { comparison: { advice }, path_s } = await studio.call("session.compare", { expert: kExpert, trainee: kClumsy });
