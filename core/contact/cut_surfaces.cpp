@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <new>
-#include <ranges>
 #include <utility>
 
 #include "core/cutting/swept_surface.h"
@@ -26,15 +25,15 @@ static bool is_same(const State* surface, const State& state, const TouchedCuts&
 }
 
 CutSurfaces::CutSurfaces(const Model& model, StageWatch* watch) : model_(model), watch_(watch), points_(model) {
-  const auto is_touched = [&](std::size_t organ) { return points_.has(organ); };
-  const auto organs = std::views::iota(std::size_t(0), model.organs.size());
   if (!model.has_tool(ToolKind::ball) && !model.has_meeting_bodies()) return;
-  if (std::ranges::none_of(organs, is_touched)) return;
+  std::vector<std::size_t> touched;
+  for (std::size_t organ = 0; organ < model.organs.size(); ++organ)
+    if (points_.has(organ)) touched.push_back(organ);
+  if (touched.empty()) return;
   for (auto* followed : {&open_, &opening_}) {
     *followed = std::make_unique<Followed>();
-    (*followed)->organs.resize(organs.size());
-    for (const std::size_t organ : organs | std::views::filter(is_touched))
-      (*followed)->organs[organ].emplace(model, organ, watch);
+    (*followed)->organs.resize(model.organs.size());
+    for (const std::size_t organ : touched) (*followed)->organs[organ].emplace(model, organ, watch);
   }
 }
 

@@ -40,9 +40,12 @@ std::int32_t OwnMotion::free_piece(std::int32_t sphere) const {
 }
 
 surface::RigidMotion OwnMotion::of(std::int32_t piece, const Vec3Array& position) const {
-  const auto spheres = std::ranges::equal_range(
-      by_piece_, piece, {}, [&](std::int32_t sphere) { return pieces_.piece()[std::size_t(sphere)]; });
-  return surface::rigid_motion(model_, spheres, position);
+  const auto piece_of = [&](std::int32_t sphere) { return pieces_.piece()[std::size_t(sphere)]; };
+  const auto first = std::lower_bound(by_piece_.begin(), by_piece_.end(), piece,
+                                      [&](std::int32_t sphere, std::int32_t of) { return piece_of(sphere) < of; });
+  const auto last =
+      std::find_if(first, by_piece_.end(), [&](std::int32_t sphere) { return piece_of(sphere) != piece; });
+  return surface::rigid_motion(model_, {first, last}, position);
 }
 
 }  // namespace ctpm::contact

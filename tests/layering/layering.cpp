@@ -169,7 +169,7 @@ class Sources {
   /// Libraries return what there is to say, and name options by their fields.
   void check_words(const std::string& file, const std::vector<std::string>& lines) {
     static const std::regex print(R"((^|[^\w])(printf|puts|putchar|fputs|fprintf)\s*\(|std::(cout|cerr|clog)\b)"),
-        flag(R"re("([^"]*[^"\w])?(--[a-z][a-z-]+|-o)\b[^"]*")re");
+        flag(R"re("([^"]*[^"\w])?(--[a-z][a-z-]+|-o)\b[^"]*")re"), ranges(R"(\bstd::(ranges|views)::)");
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const std::string& text = lines[i];
       // An internal error prints where it is before it aborts.
@@ -177,6 +177,8 @@ class Sources {
         report(file, int(i) + 1, "prints, which only studio/commands may");
       if (std::regex_search(text, flag))
         report(file, int(i) + 1, "names a flag, which only studio/commands may: name the option's field");
+      if (file.starts_with("core/") && std::regex_search(text, ranges))
+        report(file, int(i) + 1, "uses ranges, which clang 14 cannot compile with the library of gcc 12");
     }
   }
 

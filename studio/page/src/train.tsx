@@ -55,6 +55,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
   const [error, setError] = useState<Error | null>(null);
   const redraw = useRedraw(), marks = useMarks();
   const loading = useRef<AbortController | null>(null);
+  const bar = useRef<HTMLDivElement>(null), barHeight = useRef(0); // that of a training that ran last, so that the picture stays at its end [px]
   const sound = useRef(new ForceSound());
 
   useEffect(() => {
@@ -159,6 +160,9 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
     };
   }, [recorded, trainer]);
 
+  useEffect(() => {
+    if (phase === "running" && bar.current) barHeight.current = bar.current.getBoundingClientRect().height;
+  });
   const view = trainer?.scene?.view ?? null;
   sound.current.sound(forceOf(trainer) / forceLimit(view));
 
@@ -198,7 +202,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
         {phase === "running" && trainer && <OverPicture trainer={trainer} marks={marks} isTouch={isTouch} waits={waits} />}
         <Problems error={error} />
       </div>
-      <div class="time">
+      <div class="time" ref={bar} style={{ minHeight: phase === "ended" && view ? barHeight.current : 0 }}>
         {phase === "running" && trainer?.scene && <TrainBar trainer={trainer} output={output} isTouch={isTouch} redraw={redraw} />}
       </div>
       <aside class="side">

@@ -56,6 +56,7 @@ step("names in a scene are text", async () => {
   assert.ok(red > 0.03, `${red} of the picture is tissue`);
   await page.click("button:has-text('End')");
   await page.waitForSelector("button:has-text('Train again')");
+  assert.equal((await page.locator(".view canvas").boundingBox()).height, height, "the picture stays as large as it was");
   assert.equal(await page.locator("main img").count(), 0);
   // In the other rooms too: lists, handles and fields of a scene, captions and panels of its session.
   await page.click("button:has-text('Choose a scene')");

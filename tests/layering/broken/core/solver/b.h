@@ -1,1 +1,2 @@
 // Knows nothing.
+const auto all = std::views::iota(0, 3);
