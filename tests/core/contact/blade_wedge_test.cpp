@@ -193,6 +193,37 @@ TEST(BladeWedge, TheForceDoesNotJumpForTheWidthWhereTheBladeEntersAndStopsWherev
   }
 }
 
+// The far face is flat and the edge parallel to it: what is left to cut ends within 0.2 mm of way, and the last of it
+// gives way at once as the tissue springs back. How much force is lost in one tick is chance of where ticks fall, so
+// the worst of ten phases counts, at each of five speeds.
+TEST(BladeWedge, TheForceEndsAsSuddenlyWithoutTheWidthWhereTheWholeEdgeLeavesAtOnce) {
+  double whole = 0;  // force before the far face [N]
+  const auto largest_drops = [&whole](double thickness) {
+    const Model model = clamped_block(6, 6, 4, 0.012, thickness);
+    stepping::Stepper stepper(model);
+    State inside = rest_state(model);
+    for (double y = -0.05; y < 0.026; y += 5e-5) (void)stepper.step(inside, knife_at({0.0013, y, 0.008}));
+    std::vector<double> drops;
+    for (const double per_tick : {2e-4, 1e-4, 5e-5, 2e-5, 1e-5}) {
+      double largest = 0;
+      for (int phase = 0; phase < 10; ++phase) {
+        State state = inside;
+        double last = 0;
+        for (double y = 0.026 + 0.1 * phase * per_tick; y < 0.0312; y += per_tick) {
+          const double force = -stepper.step(state, knife_at({0.0013, y, 0.008})).tool_force.y;
+          largest = std::max(largest, last - force), whole = std::max(whole, force), last = force;
+        }
+        EXPECT_EQ(last, 0) << "the blade has left";
+      }
+      drops.push_back(largest);
+    }
+    return drops;
+  };
+  const std::vector<double> thick = largest_drops(kThickness), thin = largest_drops(1e-9);
+  for (std::size_t i = 0; i < thin.size(); ++i) EXPECT_LT(thick[i], thin[i] + 0.18 * whole) << "speed " << i;
+  for (const std::size_t slow : {3, 4}) EXPECT_LT(thick[slow], thin[slow] + 0.02 * whole) << "speed " << slow;
+}
+
 TEST(BladeWedge, GivesTheSameBitsOnAnyThreadsAndFromAnyState) {
   const Model model = clamped_block(8, 8, 5, 0.006, 1e-3, 20, 500);
   const auto pose = [](int tick) { return knife_at({0.0004, -0.03 + 1e-4 * tick, 0.005}); };
