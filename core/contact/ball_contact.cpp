@@ -128,6 +128,11 @@ surface::Follower BallContact::follower(std::int32_t slot) const {
   return part.surface->follower(slot - part.first_slot);
 }
 
+Vec3 BallContact::carried(std::int32_t slot) const {
+  const Part& part = part_of(slot);
+  return part.surface->carried(slot - part.first_slot);
+}
+
 /// Marks what the ball touched at the start of the substep.
 void BallContact::mark_touched(const StateView& state, const BallMotion& ball, std::uint8_t value) {
   const std::int32_t first = first_point_of(ball.hand);
@@ -161,15 +166,15 @@ void BallContact::find(const StateView& state, const BallMotion& ball, PointCont
 }
 
 /// What is near a ball, or was touched by it at the start of the substep.
-Reach BallContact::reach_of(const StateView& state, const BallMotion& ball) const {
+Reach BallContact::reach_of(const StateView& state, const BallMotion& ball) {
   Reach reach(ball.centre, ball.radius);
   const auto add = [&](Vec3 place) { reach.distance = std::max(reach.distance, reach.add(place)); };
   const std::int32_t first = first_point_of(ball.hand);
   for (const std::int32_t point : state.touched) {
     // At each of these points the pressure on all vertices of a facet was gathered.
     if (point >= first && point - first < vertex_count_) {
-      add(follower(point - first).of(state.position));
-      for (const std::int32_t v : gathering_.gathered_at(point - first)) reach.add(follower(v).of(state.position));
+      add(carried(point - first));
+      for (const std::int32_t v : gathering_.gathered_at(point - first)) reach.add(carried(v));
     }
     if (!cuts_.any() || !cuts_.points().is_of_ball(point, ball.hand)) continue;
     const cutbody::CutPoints::Place at = cuts_.points().place(point);
@@ -188,9 +193,9 @@ Reach BallContact::reach_of(const StateView& state, const BallMotion& ball) cons
 }
 
 void BallContact::find_on_surfaces(const StateView& state, const BallMotion& ball, PointContacts& contacts) {
+  if (!own_.empty()) own_.begin(state.position);
   Reach reach = reach_of(state, ball);
   if (!own_.empty()) {
-    own_.begin(state.position);
     Box asked = reach.box;
     asked.high.z = std::numeric_limits<double>::infinity();  // for is_inside()
     if (cuts_.wait_near(asked, state, own_)) reach = reach_of(state, ball);
@@ -204,8 +209,9 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
   mark_touched(state, ball, 1);
   pressed_area_ = {};
   behind_.clear();
-  for (const auto& [part, triangle] : near.triangles())
-    if (dent((*parts_)[std::size_t(part)], *triangle, ball, reach.distance, false)) behind_.push_back({part, triangle});
+  for (const NearTriangles::Found& found : near.triangles())
+    if (dent((*parts_)[std::size_t(found.part)], *found.triangle, ball, reach.distance, false, near.least_apart(found)))
+      behind_.push_back(found);
   dent_behind(ball, reach.distance);
   mark_touched(state, ball, 0);
   const double a = std::sqrt(norm(pressed_area_) / kPi);
@@ -221,11 +227,11 @@ void BallContact::find_on_surfaces(const StateView& state, const BallMotion& bal
 void BallContact::dent_behind(const BallMotion& ball, double reach) {
   std::int32_t organ = -1;
   bool is_in = false;
-  for (const auto& [index, triangle] : behind_) {
-    const Part& part = (*parts_)[std::size_t(index)];
-    const std::int32_t its = organ_of(part, part.first_slot + triangle->corner[0]);
+  for (const NearTriangles::Found& found : behind_) {
+    const Part& part = (*parts_)[std::size_t(found.part)];
+    const std::int32_t its = organ_of(part, part.first_slot + found.triangle->corner[0]);
     if (its != organ) organ = its, is_in = is_inside(organ, ball.centre + ball.radius * kBeside);
-    if (is_in) dent(part, *triangle, ball, reach, true);
+    if (is_in) dent(part, *found.triangle, ball, reach, true, 0);
   }
 }
 
@@ -265,13 +271,7 @@ void BallContact::press_slot(const StateView& state, const BallMotion& ball, std
        .point = slot - part.first_slot + part.first_point + (part.patch == nullptr ? first_point_of(ball.hand) : 0),
        .dent = volume / pressed.area,
        .foundation = Foundation(organ, k, ball.step.elapsed)},
-      carriers, place_of(part, slot - part.first_slot, state), contacts);
-}
-
-/// Where a vertex is that the ball touches [m].
-Vec3 BallContact::place_of(const Part& part, std::int32_t vertex, const StateView& state) {
-  const Vec3 sum = part.surface->follower(vertex).of(state.position);
-  return part.patch == nullptr ? sum : sum + part.surface->offset(vertex);
+      carriers, part.surface->place(slot - part.first_slot), contacts);
 }
 
 /// Part with which the wall of a cut counts at a vertex.
@@ -285,15 +285,16 @@ double BallContact::share_of(const Part& part, std::int32_t slot, double radius)
 
 /// Adds to a triangle's corners those of its parts in the ball that face the ball's centre or, with `behind`, those
 /// that do not, in the ball or outside of it where they were touched. Returns whether it has parts of the other kind.
-/// `reach`: of the ball where it touched before [m].
+/// `reach`: of the ball where it touched before [m]. `apart`: the triangle is at least so far from its centre [m].
 bool BallContact::dent(const Part& part, const surface::NearSurface::Triangle& triangle, const BallMotion& ball,
-                       double reach, bool behind) {
+                       double reach, bool behind, double apart) {
   std::int32_t vertex[3];
   for (std::size_t c = 0; c < 3; ++c) vertex[c] = part.first_slot + triangle.corner[c];
   std::int32_t slot[3];
   for (std::size_t c = 0; c < 3; ++c) slot[c] = part.gathers_at(triangle.corner[c]);
   const bool was_touched =
       was_touched_[std::size_t(slot[0])] || was_touched_[std::size_t(slot[1])] || was_touched_[std::size_t(slot[2])];
+  if (!was_touched && apart > ball.radius) return false;
   const Box near = Box(ball.centre).grown(was_touched ? reach : ball.radius);
   if (part.patch != nullptr && !near.meets(part.surface->around(triangle))) return false;  // to turn costs more
   const Vec3 corners[3] = {part.surface->place(triangle.corner[0]), part.surface->place(triangle.corner[1]),

@@ -73,21 +73,21 @@ class BallContact {
   std::int32_t number_of(const PointContact& contact) const {
     return contact.point - first_point_of(std::size_t(contact.hand));
   }
-  Reach reach_of(const StateView& state, const BallMotion& ball) const;
+  Reach reach_of(const StateView& state, const BallMotion& ball);
   using Part = BallPart;
 
   const Part& part_of(std::int32_t slot) const;
   std::int32_t organ_of(const Part& part, std::int32_t slot) const;
   surface::Follower follower(std::int32_t slot) const;
+  Vec3 carried(std::int32_t slot) const;
   void mark_touched(const StateView& state, const BallMotion& ball, std::uint8_t value);
   bool may_be_hidden(const Part& part, const surface::NearSurface::Triangle& triangle) const;
   bool is_hidden(const Part& part, const surface::NearSurface::Triangle& triangle, const double* weights) const;
   double share_of(const Part& part, std::int32_t slot, double radius);
   bool dent(const Part& part, const surface::NearSurface::Triangle& triangle, const BallMotion& ball, double reach,
-            bool behind);
+            bool behind, double apart);
   void dent_behind(const BallMotion& ball, double reach);
   bool is_inside(std::int32_t organ, Vec3 point);
-  static Vec3 place_of(const Part& part, std::int32_t vertex, const StateView& state);
   void press_slot(const StateView& state, const BallMotion& ball, std::int32_t slot, double radius,
                   PointContacts& contacts);
   void find_on_surfaces(const StateView& state, const BallMotion& ball, PointContacts& contacts);

@@ -128,7 +128,8 @@ std::size_t NearTriangles::look_at(Group& group, const Reach& reach, double marg
   std::size_t visited = 0;
   surface.near_of_group(around, group.number, [&](const surface::NearSurface::Triangle& triangle) {
     ++visited;
-    if (around.meets(surface.around(triangle))) group.found.push_back(&triangle);
+    const Box box = surface.around(triangle);
+    if (around.meets(box)) group.found.push_back({&triangle, gap(box, Box(reach.centre))});
   });
   return visited;
 }
@@ -137,14 +138,16 @@ std::size_t NearTriangles::look_at(Group& group, const Reach& reach, double marg
 void NearTriangles::list() {
   parts_.assign(all_.begin(), all_.begin() + std::ptrdiff_t(whole_)), found_.clear(), slots_ = whole_slots_;
   std::size_t last = whole_ - 1;  // the part that was listed last
-  for (const Group& group : groups_) {
+  for (std::size_t number = 0; number < groups_.size(); ++number) {
+    const Group& group = groups_[number];
     if (group.found.empty()) continue;
     if (group.part >= whole_ && last != group.part) {
       last = group.part, parts_.push_back(all_[last]);
       parts_.back().first_slot = slots_, slots_ += parts_.back().slots();
     }
     const std::size_t part = group.part < whole_ ? group.part : parts_.size() - 1;
-    for (const surface::NearSurface::Triangle* triangle : group.found) found_.push_back({std::int32_t(part), triangle});
+    for (const Candidate& candidate : group.found)
+      found_.push_back({std::int32_t(part), candidate.triangle, std::int32_t(number), candidate.apart});
   }
 }
 

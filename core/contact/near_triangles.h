@@ -61,6 +61,8 @@ class NearTriangles {
   struct Found {
     std::int32_t part;
     const surface::NearSurface::Triangle* triangle;
+    std::int32_t group;  ///< that it is of
+    double apart;        ///< from the ball's centre when it was found [m]
   };
 
   /// `whole`: the surfaces of organs, with `slots` slots; they and `cuts` must outlive the NearTriangles. `kind`: of
@@ -73,9 +75,18 @@ class NearTriangles {
 
   const std::vector<BallPart>& parts() const { return parts_; }   ///< those of whole organs first
   const std::vector<Found>& triangles() const { return found_; }  ///< by part, in the order of NearSurface::near()
+  /// A triangle is at least so far from the ball's centre in this round [m].
+  double least_apart(const Found& found) const {
+    const Group& group = groups_[std::size_t(found.group)];
+    return found.apart - (group.used + (all_path_ - group.all_path) + kRounding);
+  }
   std::int32_t slots() const { return slots_; }
 
  private:
+  struct Candidate {
+    const surface::NearSurface::Triangle* triangle;
+    double apart;  ///< from the ball's centre [m]
+  };
   struct Group {
     std::size_t part, number;  ///< in all_, and of its surface
     WatchedSpheres spheres{};  ///< that it follows, as of when `used` was last found
@@ -83,7 +94,7 @@ class NearTriangles {
     double used = 0;           ///< of it, until the ball was there and all had come so far: [m]
     Vec3 centre{};
     double grown = 0, all_path = 0;
-    std::vector<const surface::NearSurface::Triangle*> found{};
+    std::vector<Candidate> found{};
   };
 
   void find_groups();

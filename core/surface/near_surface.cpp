@@ -69,6 +69,7 @@ void NearSurface::find_bounds(Index triangles_per_patch) {
   if (!offset_size_.empty()) placed_.resize(vertex_count()), placed_in_.assign(vertex_count(), 0);
   if (triangles_.empty()) return;
   sort_triangles();
+  negative_.assign(vertex_count(), 0);
   const auto count = Index(triangles_.size());
   std::vector<Index> seen(spheres_.size(), -1);
   for (Index t = 0; t < count; t += triangles_per_patch) {
@@ -167,7 +168,7 @@ NearSurface::Bound NearSurface::bound_of(Index first, Index last, Index first_tr
         if (std::exchange(seen[std::size_t(sphere)], begin) != begin) bound_spheres_.push_back(sphere);
         negative -= std::min(weight_[e], 0.0);
       }
-      widen = std::max(widen, negative);
+      negative_[std::size_t(corner)] = negative, widen = std::max(widen, negative);
       turned = std::max(turned, 2 * offset_size(corner));
     }
   std::sort(bound_spheres_.begin() + begin, bound_spheres_.end());
@@ -242,12 +243,6 @@ Vec3 NearSurface::place(Index vertex) {
   const auto v = std::size_t(vertex);
   if (std::exchange(placed_in_[v], round_) == round_) return placed_[v];
   return placed_[v] = carried(vertex) + offset(vertex);
-}
-
-double NearSurface::stretch(Index vertex) const {
-  double sum = 0;
-  for (const double weight : follower(vertex).weight) sum += std::abs(weight);
-  return sum;
 }
 
 NearSurface::Turned& NearSurface::turned(Index frame) const {

@@ -100,7 +100,7 @@ class NearSurface {
   }
   /// A vertex moves at most so many times as far as the farthest of its spheres.
   double stretch() const { return 1 + 2 * widen_; }
-  double stretch(Index vertex) const;
+  double stretch(Index vertex) const { return 1 + 2 * negative_[std::size_t(vertex)]; }
   /// Where a vertex is [m].
   Vec3 place(Index vertex);
   /// What turns with its spheres and is in no weight [m].
@@ -175,6 +175,7 @@ class NearSurface {
   std::vector<Bound> patches_, groups_;
   std::vector<Place> patch_places_, group_places_;
   std::vector<Index> bound_spheres_;  ///< in spheres_
+  std::vector<double> negative_;      ///< minus the sum of a vertex's negative weights
   Box rest_box_{Vec3{}};
   double widen_ = 0, most_turned_ = 0;  ///< the largest of all bounds
   std::vector<Vec3> position_;          ///< of spheres_ in the present round [m]

@@ -30,9 +30,11 @@ bool has_any(const Reach& reach, Place&& place) {
 
 std::vector<Seen> touching(const NearTriangles& near, const Reach& reach) {
   std::vector<Seen> seen;
-  for (const auto& [part, triangle] : near.triangles()) {
-    const BallPart& of = near.parts()[std::size_t(part)];
+  for (const NearTriangles::Found& found : near.triangles()) {
+    const BallPart& of = near.parts()[std::size_t(found.part)];
+    const surface::NearSurface::Triangle* triangle = found.triangle;
     const auto place = [&](int c) { return of.surface->place(triangle->corner[c]); };
+    for (int c = 0; c < 3; ++c) EXPECT_GE(norm(place(c) - reach.centre), near.least_apart(found));
     if (!has_any(reach, place)) continue;
     const bool is_whole = of.patch == nullptr;
     seen.push_back({is_whole ? -1 : of.patch->block, is_whole ? -1 : of.patch->piece, triangle->corner[0],
@@ -60,7 +62,7 @@ void expect_nothing_left_out(const Model& model, State state, bool is_cut) {
   const auto slots = std::int32_t(model.surfaces[0].vertex.size());
   NearTriangles near({{0, 0, &kept, &gathering}}, slots, cuts, 0);
   const Vec3Array rest = state.position;
-  std::size_t most_patches = 0, most_seen = 0;
+  std::size_t most_patches = 0, most_seen = 0, far = 0;
   for (int tick = 0; tick < 1200; ++tick) {
     const Reach reach = ball_at(tick);
     testing::swing(rest, tick, state.position);
@@ -76,6 +78,7 @@ void expect_nothing_left_out(const Model& model, State state, bool is_cut) {
     }
     near.find(reach, kMargin, state.position);
     const std::vector<Seen> seen = touching(near, reach);
+    for (const NearTriangles::Found& found : near.triangles()) far += near.least_apart(found) > kRadius;
     most_patches = std::max(most_patches, near.parts().size() - 1), most_seen = std::max(most_seen, seen.size());
     NearTriangles once({{0, 0, &anew, &gathering}}, slots, cuts, 0);
     once.find(reach, 0, state.position);
@@ -88,6 +91,7 @@ void expect_nothing_left_out(const Model& model, State state, bool is_cut) {
     ASSERT_EQ(std::count_if(seen.begin(), seen.end(), [](const Seen& s) { return s[0] < 0; }), std::ptrdiff_t(own));
   }
   EXPECT_GT(most_seen, 50u);
+  EXPECT_GT(far, 1000u) << "triangles that are known not to be in the ball";
   EXPECT_EQ(most_patches > 0, is_cut);
 }
 
