@@ -1,5 +1,6 @@
 #include "studio/session/urgency.h"
 
+#include <fcntl.h>
 #include <sched.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -8,6 +9,7 @@
 
 #include <cstdint>
 #include <ctime>
+#include <utility>
 
 namespace ctpm::session {
 namespace {
@@ -72,6 +74,15 @@ void Precedence::give_up() {
   if (!is_first_ || !schedule(SCHED_OTHER)) return;
   is_first_ = false;
   become(Urgency::tick);
+}
+
+AwakeProcessors::AwakeProcessors() : file_(open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC)) {
+  constexpr std::int32_t kNone = 0;  // longest latency of waking up [us], until the file is closed
+  if (file_ >= 0 && write(file_, &kNone, sizeof kNone) != sizeof kNone) close(std::exchange(file_, -1));
+}
+
+AwakeProcessors::~AwakeProcessors() {
+  if (file_ >= 0) close(file_);
 }
 
 TickUrgency::TickUrgency(double tick) : nice_before_(getpriority(PRIO_PROCESS, id_t(gettid()))), precedence_(tick) {

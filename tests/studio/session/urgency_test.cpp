@@ -2,11 +2,13 @@
 
 #include "studio/session/urgency.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <ctime>
 #include <thread>
 
@@ -65,6 +67,24 @@ TEST(Urgency, TicksInRealTimeGoFirstAndThenTheThreadIsAsItWas) {
     EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER);
     EXPECT_EQ(nice(), 3);
   }).join();
+}
+
+TEST(Urgency, ProcessorsStayAwakeAsLongAsTicksRunInRealTime) {
+  const auto longest_latency = [] {
+    const int file = open("/dev/cpu_dma_latency", O_RDONLY);
+    std::int32_t latency = -1;  // [us]
+    if (file >= 0 && read(file, &latency, sizeof latency) != sizeof latency) latency = -1;
+    if (file >= 0) close(file);
+    return latency;
+  };
+  if (access("/dev/cpu_dma_latency", W_OK) != 0) GTEST_SKIP() << "this user may not keep processors awake";
+  const std::int32_t before = longest_latency();
+  if (before == 0) GTEST_SKIP() << "somebody else keeps them awake";
+  {
+    const TickUrgency urgency(kInterval);
+    EXPECT_EQ(longest_latency(), 0);
+  }
+  EXPECT_EQ(longest_latency(), before);
 }
 
 }  // namespace
