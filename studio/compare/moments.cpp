@@ -86,18 +86,32 @@ std::vector<Moment> deviations(const Comparison& comparison, const SessionTrack&
   return moments;
 }
 
-/// All idle spells of a session, in seconds.
+/// Idle spells of a session, in seconds.
 struct Pause {
   double from_s, to_s;
 };
 
+/// When the work begins and ends; all of a session without any.
+Pause work_of(const SessionTrack& track) {
+  std::size_t first = 0, last = track.tick_count();
+  while (first < last && !track.works(first)) ++first;
+  if (first == last) return {0, track.seconds(last)};
+  while (!track.works(last - 1)) --last;
+  return {track.seconds(first), track.seconds(last)};
+}
+
+/// Those in the work: who reads what is to be done, or has done it, does not pause.
 std::vector<Pause> pauses_of(const SessionTrack& track) {
+  const Pause work = work_of(track);
   std::vector<Pause> pauses;
   for (const Spell& stroke : track.strokes) {
     const HandMotion hand = hand_motion(track, stroke);
     const double start = track.seconds(stroke.first);
-    for (const Spell& idle : hand.idle)
-      pauses.push_back({start + double(idle.first) / hand.rate_hz, start + double(idle.last) / hand.rate_hz});
+    for (const Spell& idle : hand.idle) {
+      const double from = std::max(work.from_s, start + double(idle.first) / hand.rate_hz),
+                   to = std::min(work.to_s, start + double(idle.last) / hand.rate_hz);
+      if (from < to) pauses.push_back({from, to});
+    }
   }
   return pauses;
 }

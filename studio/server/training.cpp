@@ -57,6 +57,7 @@ std::string ended_text(const std::string& shown, const Result<session::RecordOut
       if (const std::int64_t count = outcome->run.late_by.of(cause); count > 0)
         json.member(recordings::name_of(cause), count);
     json.end_object()
+        .member("waited_for_processor_s", outcome->run.waited)
         .member("slip_s", s.slip)
         .member("slip_max_s", s.slip_max)
         .member("fault", std::string_view(outcome->run.fault))

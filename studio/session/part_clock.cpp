@@ -1,9 +1,9 @@
 #include "studio/session/part_clock.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <utility>
+
+#include "studio/session/urgency.h"
 
 namespace ctpm::session {
 namespace {
@@ -18,15 +18,9 @@ double between(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
 }
 
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
-
 }  // namespace
 
-void PartClock::look_at_processor() { looked_ = last_, processor_ = thread_seconds(); }
+void PartClock::look_at_processor() { looked_ = last_, processor_ = thread_time(); }
 
 void PartClock::begin_tick(Clock::time_point due, Clock::time_point waited) {
   // A tick that follows a late one is due when that ended: its time is its own.

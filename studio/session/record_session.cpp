@@ -69,7 +69,9 @@ Result<RecordOutcome> record_session(const recordings::SessionStart& start, sour
   RecordOutcome outcome;
   State state = start.initial_state;
   outcome.run = run_session(start.model, state, source, *writer, running);
-  const Result<recordings::SessionStatistics> statistics = writer->finish(source.statistics());
+  std::vector<recordings::NamedValue> values = source.statistics();
+  if (options.in_real_time) values.emplace_back("waited_for_processor_s", outcome.run.waited);
+  const Result<recordings::SessionStatistics> statistics = writer->finish(std::move(values));
   if (!statistics) return statistics.errors();
   outcome.statistics = *statistics;
   return outcome;

@@ -24,6 +24,7 @@ struct RunOutcome {
   std::int32_t worst_sphere = -1;
   double lost = 0;    ///< time that the machine took of the last step [s]; see PartClock
   double slip = 0;    ///< real time less session time at the start of the last tick [s]; 0 if not in real time
+  double waited = 0;  ///< how long the thread waited for a processor between the first tick and the last [s]
   std::string fault;  ///< why the source ended the session early; empty if it did not
 };
 

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <ctime>
+#include <fstream>
 #include <utility>
 
 namespace ctpm::session {
@@ -33,13 +34,6 @@ void ask_for_short_slices() {
   syscall(SYS_sched_setattr, 0, &attributes, 0);
 }
 
-/// Of the calling thread on a processor [s].
-double thread_time() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
-}
-
 bool schedule(int policy) {
   sched_param parameters{};
   parameters.sched_priority = sched_get_priority_min(policy);
@@ -47,6 +41,18 @@ bool schedule(int policy) {
 }
 
 }  // namespace
+
+double thread_time() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+
+double thread_wait() {
+  std::ifstream file("/proc/thread-self/schedstat");  // nanoseconds on a processor, and waiting for one
+  double ran = 0, waited = 0;
+  return file >> ran >> waited ? 1e-9 * waited : 0.0;
+}
 
 void become(Urgency urgency) {
   setpriority(PRIO_PROCESS, id_t(gettid()), int(urgency));

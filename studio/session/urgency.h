@@ -9,6 +9,12 @@ enum class Urgency {
   idle = 15,      ///< what may be of use later
 };
 
+/// How long the calling thread was on a processor [s].
+double thread_time();
+
+/// How long the calling thread has waited for a processor while others had them [s]; 0 where the kernel does not tell.
+double thread_wait();
+
 /// Gives the calling thread that urgency, and those that it makes. Only a privileged user may go before others; without
 /// that a thread stays as it was, but for ticks, which every user may let interrupt the slices of others.
 void become(Urgency urgency);

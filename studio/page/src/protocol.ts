@@ -213,6 +213,7 @@ export interface EndedTraining {
   pose_wait_p99_s?: number;
   pose_way_p99_s?: number; // of it, until the program had read it
   poses_within_5ms?: number; // share
+  waited_for_processor_s?: number;
 }
 
 export interface OrganTriangles {

@@ -38,9 +38,21 @@ constexpr std::size_t kWithout = 0;  ///< late ticks may not rise against it
 constexpr double kMostRise = 1.05;
 
 /// What a run measured.
-enum Measure { late_share, late_by_us, tick_p50, tick_p99, wait_p50, wait_p99, way_p99, within, kMeasures };
+enum Measure {
+  late_share,
+  late_by_us,
+  no_processor,
+  tick_p50,
+  tick_p99,
+  wait_p50,
+  wait_p99,
+  way_p99,
+  within,
+  kMeasures
+};
 constexpr std::array kNames{"late ticks, % of all",
                             "late ticks but the machine's, % of all",
+                            "without a processor, us a tick",
                             "tick p50, ms",
                             "tick p99, ms",
                             "pose to tick p50, ms",
@@ -83,7 +95,8 @@ std::optional<Run> run_alone(const recordings::SessionStart& start, const Vec3& 
     const recordings::SessionStatistics& s = outcome->statistics;
     const std::int64_t by_us = outcome->run.late_ticks - outcome->run.late_by.of(recordings::LateCause::machine);
     run = Run{1e2 * double(outcome->run.late_ticks) / double(outcome->run.ticks),
-              1e2 * double(by_us) / double(outcome->run.ticks), 1e3 * s.tick_time_p50, 1e3 * s.tick_time_p99};
+              1e2 * double(by_us) / double(outcome->run.ticks), 1e6 * outcome->run.waited / double(outcome->run.ticks),
+              1e3 * s.tick_time_p50, 1e3 * s.tick_time_p99};
     for (const auto& [name, value] : s.values) {
       if (name == "device_pose_wait_p50_s") (*run)[wait_p50] = 1e3 * value;
       if (name == "device_pose_wait_p99_s") (*run)[wait_p99] = 1e3 * value;
@@ -116,10 +129,15 @@ std::optional<Run> ended(SocketClient& page) try {
     if (!message.is_text || message.bytes.find("train_ended") == std::string::npos) continue;
     const nlohmann::json end = nlohmann::json::parse(message.bytes)["content"];
     const double late = end["late_ticks"], by_machine = end["late_by"].value("machine", 0.0);
-    return Run{1e2 * late / double(end["ticks"]),    1e2 * (late - by_machine) / double(end["ticks"]),
-               1e3 * double(end["tick_time_p50_s"]), 1e3 * double(end["tick_time_p99_s"]),
-               1e3 * double(end["pose_wait_p50_s"]), 1e3 * double(end["pose_wait_p99_s"]),
-               1e3 * double(end["pose_way_p99_s"]),  1e2 * double(end["poses_within_5ms"])};
+    return Run{1e2 * late / double(end["ticks"]),
+               1e2 * (late - by_machine) / double(end["ticks"]),
+               1e6 * double(end["waited_for_processor_s"]) / double(end["ticks"]),
+               1e3 * double(end["tick_time_p50_s"]),
+               1e3 * double(end["tick_time_p99_s"]),
+               1e3 * double(end["pose_wait_p50_s"]),
+               1e3 * double(end["pose_wait_p99_s"]),
+               1e3 * double(end["pose_way_p99_s"]),
+               1e2 * double(end["poses_within_5ms"])};
   }
 } catch (const std::exception&) {
   return std::nullopt;

@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdint>
 #include <ctime>
 #include <thread>
@@ -85,6 +86,30 @@ TEST(Urgency, ProcessorsStayAwakeAsLongAsTicksRunInRealTime) {
     EXPECT_EQ(longest_latency(), 0);
   }
   EXPECT_EQ(longest_latency(), before);
+}
+
+TEST(Urgency, AThreadKnowsHowLongOthersHadItsProcessor) {
+  std::thread([] {
+    cpu_set_t all, one;
+    CPU_ZERO(&one);
+    if (sched_getaffinity(0, sizeof all, &all) != 0) GTEST_SKIP() << "threads cannot be kept on a processor here";
+    int first = 0;
+    while (!CPU_ISSET(first, &all)) ++first;
+    CPU_SET(first, &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+    std::atomic<bool> ends = false;
+    const double before = thread_wait();
+    std::thread other([&] {  // on the same processor
+      while (!ends) {
+      }
+    });
+    for (const double start = thread_time(); thread_time() - start < 0.1;) {
+    }
+    ends = true;
+    other.join();
+    if (thread_wait() == 0) GTEST_SKIP() << "this kernel does not tell";
+    EXPECT_GT(thread_wait() - before, 0.02) << "the other one had about half of the time";
+  }).join();
 }
 
 }  // namespace
