@@ -88,15 +88,46 @@ int run_shapes(const ExportArguments& arguments) {
 
 bool is_sheet(const std::string& path) { return path.ends_with(".png"); }
 
-/// Draws one moment of a session, or all of it on one page.
-int run_picture(recordings::SessionReader& session, ExportArguments& arguments) {
-  if (arguments.at_s) {
-    const Result<Done> written = film::write_still(session, arguments.output, *arguments.at_s, arguments.options);
-    if (!written) return print_errors(written.errors());
-    print("%s: at %g s, %dx%d\n", arguments.output.c_str(), *arguments.at_s, arguments.options.size.width,
-          arguments.options.size.height);
-    return exit_good;
+/// Of some sessions those that stand side by side; writes to the arguments what brings them together, and the ghost.
+Result<std::vector<recordings::SessionReader*>> pair_up(std::vector<recordings::SessionReader>& readers,
+                                                        ExportArguments& arguments) {
+  std::vector<recordings::SessionReader*> sessions;
+  for (recordings::SessionReader& reader : readers) sessions.push_back(&reader);
+  if (sessions.size() < 2) return sessions;
+  Result<compare::MatchedMoments> matched = compare::match_sessions(*sessions[0], *sessions[1], arguments.align);
+  if (!matched) return matched.errors();
+  arguments.options.matched = std::move(*matched);
+  const Result<Done> same = compare::check_same_scene(*sessions[0], *sessions[1]);
+  if (!same && arguments.ghost.empty()) print_warnings(same.errors());
+  if (same && !arguments.no_expert_line) {
+    Result<std::shared_ptr<const render::ExpertCut>> cut =
+        film::expert_cut_of(*(arguments.ghost.empty() ? sessions[0] : sessions[1]));
+    if (cut)
+      arguments.options.expert = std::move(*cut);
+    else
+      print_warnings(cut.errors());
   }
+  if (!arguments.ghost.empty()) {
+    if (!same) return same.errors();
+    arguments.options.ghost = sessions.back();
+    sessions.pop_back();
+  }
+  return sessions;
+}
+
+/// Draws one moment of a session or of a pair.
+int run_moment(std::vector<recordings::SessionReader>& readers, ExportArguments& arguments) {
+  const Result<std::vector<recordings::SessionReader*>> sessions = pair_up(readers, arguments);
+  if (!sessions) return print_errors(sessions.errors());
+  const Result<Done> written = film::write_still(*sessions, arguments.output, *arguments.at_s, arguments.options);
+  if (!written) return print_errors(written.errors());
+  print("%s: at %g s, %dx%d\n", arguments.output.c_str(), *arguments.at_s, arguments.options.size.width,
+        arguments.options.size.height);
+  return exit_good;
+}
+
+/// Draws all of a session on one page.
+int run_sheet(recordings::SessionReader& session, ExportArguments& arguments) {
   const Result<Done> written = [&] {
     ProgressLine progress("drawing");
     arguments.options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
@@ -116,7 +147,7 @@ Errors check_arguments(const ExportArguments& arguments) {
     errors.push_back({"--at-s", "is for .png, .vtp, .vtu and .glb, which hold one moment", ""});
   if (!arguments.options.caption.empty() && is_picture && !arguments.at_s)
     errors.push_back({"--caption", "is for videos and for the picture of a moment", "give --at-s too"});
-  if (is_picture) append(errors, check_pair(arguments, " is a picture of one session"));
+  if (is_picture && !arguments.at_s) append(errors, check_pair(arguments, " is a picture of one session"));
   for (const auto& [flag, other] : {std::pair{"--beside", &arguments.beside}, {"--ghost", &arguments.ghost}})
     if (is_many && !other->empty()) errors.push_back({flag, "is for one session, and several are given", ""});
   if (!arguments.align.empty() && arguments.beside.empty() && arguments.ghost.empty())
@@ -128,31 +159,11 @@ Errors check_arguments(const ExportArguments& arguments) {
 
 /// One video of a session, alone, beside another or with its ghost. `arguments` belong to it alone.
 Result<film::ExportOutcome> export_one(ExportArguments arguments, std::vector<recordings::SessionReader>& readers) {
-  std::vector<recordings::SessionReader*> sessions;
-  for (recordings::SessionReader& reader : readers) sessions.push_back(&reader);
-  if (sessions.size() == 2) {
-    Result<compare::MatchedMoments> matched = compare::match_sessions(*sessions[0], *sessions[1], arguments.align);
-    if (!matched) return matched.errors();
-    arguments.options.matched = std::move(*matched);
-  }
-  const Result<Done> same = sessions.size() == 2 ? compare::check_same_scene(*sessions[0], *sessions[1]) : Done{};
-  if (!same && arguments.ghost.empty()) print_warnings(same.errors());
-  if (same && sessions.size() == 2 && !arguments.no_expert_line) {
-    Result<std::shared_ptr<const render::ExpertCut>> cut =
-        film::expert_cut_of(*(arguments.ghost.empty() ? sessions[0] : sessions[1]));
-    if (cut)
-      arguments.options.expert = std::move(*cut);
-    else
-      print_warnings(cut.errors());
-  }
-  if (!arguments.ghost.empty()) {
-    if (!same) return same.errors();
-    arguments.options.ghost = sessions.back();
-    sessions.pop_back();
-  }
+  const Result<std::vector<recordings::SessionReader*>> sessions = pair_up(readers, arguments);
+  if (!sessions) return sessions.errors();
   ProgressLine progress("exporting");
   arguments.options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
-  return film::export_video(sessions, arguments.output, arguments.options);
+  return film::export_video(*sessions, arguments.output, arguments.options);
 }
 
 Result<std::vector<recordings::SessionReader>> open_all(const std::vector<std::string>& files) {
@@ -253,7 +264,8 @@ int run_export(ExportArguments& arguments) {
       open_all({arguments.files[0], arguments.beside, arguments.ghost});
   if (!readers) errors.insert(errors.begin(), readers.errors().begin(), readers.errors().end());
   if (!errors.empty()) return print_errors(errors);
-  if (is_sheet(arguments.output)) return run_picture((*readers)[0], arguments);
+  if (is_sheet(arguments.output))
+    return arguments.at_s ? run_moment(*readers, arguments) : run_sheet((*readers)[0], arguments);
   const Result<film::ExportOutcome> outcome = export_one(arguments, *readers);
   if (!outcome) return print_errors(outcome.errors());
   if (!outcome->video.note.empty()) print_remark("warning: " + outcome->video.note);
@@ -309,7 +321,8 @@ Command add_export(CLI::App& program) {
   app->add_flag("--strip", options.strip, "The whole session's force, limit and moments on a line below the picture");
   add_time_range(*app, options.range);
   app->add_option("--at-s", arguments->at_s,
-                  "Moment of a picture (.png), or of a .vtp, .vtu or .glb, whose end is taken if it is not given");
+                  "Moment of a picture (.png), of a pair by the first session's clock; or of a .vtp, .vtu or .glb, "
+                  "whose end is taken if it is not given");
   add_look(*app, options.look);
   app->add_flag("--overwrite", arguments->options.overwrite, "Replace an existing video");
   app->add_flag("--allow-diverged", options.allow_diverged,

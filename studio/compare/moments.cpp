@@ -91,25 +91,24 @@ struct Pause {
   double from_s, to_s;
 };
 
-/// When the work begins and ends; all of a session without any.
-Pause work_of(const SessionTrack& track) {
-  std::size_t first = 0, last = track.tick_count();
-  while (first < last && !track.works(first)) ++first;
-  if (first == last) return {0, track.seconds(last)};
-  while (!track.works(last - 1)) --last;
-  return {track.seconds(first), track.seconds(last)};
+/// When the tool touches or cuts for the last time, or the session's end if it never does [s].
+double end_of_work(const SessionTrack& track) {
+  std::size_t last = track.tick_count();
+  while (last > 0 && !track.works(last - 1)) --last;
+  return track.seconds(last > 0 ? last : track.tick_count());
 }
 
-/// Those in the work: who reads what is to be done, or has done it, does not pause.
+/// From the first motion on until the work is done: who reads what is to be done, or has done it, does not pause.
 std::vector<Pause> pauses_of(const SessionTrack& track) {
-  const Pause work = work_of(track);
+  const double end = end_of_work(track);
   std::vector<Pause> pauses;
   for (const Spell& stroke : track.strokes) {
     const HandMotion hand = hand_motion(track, stroke);
     const double start = track.seconds(stroke.first);
     for (const Spell& idle : hand.idle) {
-      const double from = std::max(work.from_s, start + double(idle.first) / hand.rate_hz),
-                   to = std::min(work.to_s, start + double(idle.last) / hand.rate_hz);
+      if (&stroke == &track.strokes.front() && idle.first == 0) continue;
+      const double from = start + double(idle.first) / hand.rate_hz,
+                   to = std::min(end, start + double(idle.last) / hand.rate_hz);
       if (from < to) pauses.push_back({from, to});
     }
   }

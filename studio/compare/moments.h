@@ -28,8 +28,8 @@ Concern concern_of(const Moment& moment);
 /// The worst moments of the trainee's session: time in forbidden zones; stray cuts, which sever elements that the
 /// expert left whole; forces and depths beyond their limits; touching or cutting more than half a sphere spacing
 /// away from the expert's path, because the way to the work and back harms nothing (where the expert does neither, all
-/// of the way counts); pauses between the first touch or cut and the last that are longer than 1 s and
-/// than the expert's longest, unless a session lacks real time. They are in the order of their Concern, then of
+/// of the way counts); pauses from the first motion to the last touch or cut that are longer than 1 s and than
+/// the expert's longest, unless a session lacks real time. They are in the order of their Concern, then of
 /// severity, and after three of a kind all others have their turn.
 std::vector<Moment> worst_moments(const Comparison& comparison, const SessionTrack& expert,
                                   const SessionTrack& trainee);

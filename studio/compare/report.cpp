@@ -56,9 +56,9 @@ reports::Table moments_table(const Comparison& comparison) {
       "the path half a sphere spacing, of a pause the expert's longest and at least 1 s; for cuts it is the number of "
       "elements that the expert left whole over those that the expert severed, and of a forbidden zone the seconds in "
       "it. The path counts while the tool touches or cuts, and its value is the distance from the nearest place of the "
-      "expert's; pauses count from the first touch or cut to the last. Forbidden zones come first, then what harms the "
-      "tissue (cuts, force, depth), then the path, then pauses, and last what is next to nothing, by severity; after "
-      "three of a kind others have their turn. The order is this program's.";
+      "expert's; pauses count from the first motion to the last touch or cut. Forbidden zones come first, then what "
+      "harms the tissue (cuts, force, depth), then the path, then pauses, and last what is next to nothing, by "
+      "severity; after three of a kind others have their turn. The order is this program's.";
   return table;
 }
 

@@ -107,40 +107,20 @@ Result<ExportOutcome> export_video(const std::vector<recordings::SessionReader*>
                                    const ExportOptions& options) {
   Errors errors = check_options(path, options);
   const double frame_s = errors.empty() ? options.speed / options.fps : 1;
-  // A ghost is in step as another half would be.
-  std::vector<recordings::SessionReader*> in_step = sessions;
-  if (options.ghost) in_step.push_back(options.ghost);
+  const std::vector<recordings::SessionReader*> in_step = in_step_with(sessions, options);
   const Result<std::vector<std::array<double, 2>>> slow = slow_parts_of(in_step, options.slow_at);
   append(errors, slow);
   Result<std::vector<FrameTicks>> ticks =
       schedule(in_step, {options.range, frame_s, options.matched, slow ? *slow : std::vector<std::array<double, 2>>()});
   append(errors, ticks);
-  const int width = options.size.width / int(sessions.size());
-  std::vector<Reel> reels;
-  for (std::size_t i = 0; i < sessions.size(); ++i) {
-    ExportOptions own = options;
-    if (i + 1 < sessions.size()) own.caption.clear();
-    Result<Reel> reel =
-        make_reel(*sessions[i], ticks ? std::move((*ticks)[i]) : FrameTicks{}, {width, options.size.height}, own,
-                  reels.empty() ? std::nullopt : std::optional(seen_in(reels[0])));
-    if (reel)
-      reels.push_back(std::move(*reel));
-    else
-      append(errors, reel);
-  }
+  Result<std::vector<Reel>> made =
+      make_reels(sessions, ticks ? std::move(*ticks) : std::vector<FrameTicks>(in_step.size()), options);
+  append(errors, made);
   if (!errors.empty()) return errors;
-  if (reels.size() == 2) {
-    reels[0].role = "expert", reels[1].role = "trainee";
-    reels[0].look.draw.expert.reset();  // it made room for what stands in the other half
-  }
-  if (options.ghost) {
-    Result<Ghost> ghost = ghost_of(*options.ghost, ticks->back());
-    if (!ghost) return ghost.errors();
-    reels[0].ghost = std::move(*ghost);
-  }
-  if (const Result<Done> alike = colour_alike(reels, sessions); !alike) return alike.errors();
+  std::vector<Reel>& reels = *made;
+  const int width = options.size.width / int(sessions.size()) * int(sessions.size());
   Result<std::unique_ptr<video::VideoWriter>> writer =
-      video::VideoWriter::create(path, width * int(sessions.size()), options.size.height, options.fps);
+      video::VideoWriter::create(path, width, options.size.height, options.fps);
   if (!writer) return writer.errors();
 
   recordings::ByteHash pixels;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/errors.h"
 #include "studio/film/beside_panels.h"
 #include "studio/film/session_strip.h"
 #include "studio/loading/loaded_scene.h"
@@ -203,6 +204,41 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
   if (reel.look.is_found && !is_as_first)
     make_room(reel, session, {size.width, height}, size.width < options.size.width);
   return reel;
+}
+
+std::vector<recordings::SessionReader*> in_step_with(std::vector<recordings::SessionReader*> sessions,
+                                                     const ExportOptions& options) {
+  if (options.ghost) sessions.push_back(options.ghost);
+  return sessions;
+}
+
+Result<std::vector<Reel>> make_reels(const std::vector<recordings::SessionReader*>& sessions,
+                                     std::vector<FrameTicks> ticks, const ExportOptions& options, Between between) {
+  const render::PictureSize size{options.size.width / int(sessions.size()), options.size.height};
+  std::vector<Reel> reels;
+  Errors errors;
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
+    ExportOptions own = options;
+    if (i + 1 < sessions.size()) own.caption.clear();
+    Result<Reel> reel = make_reel(*sessions[i], std::move(ticks[i]), size, own,
+                                  reels.empty() ? std::nullopt : std::optional(seen_in(reels[0])), between);
+    if (reel)
+      reels.push_back(std::move(*reel));
+    else
+      append(errors, reel);
+  }
+  if (!errors.empty()) return errors;
+  if (reels.size() == 2) {
+    reels[0].role = "expert", reels[1].role = "trainee";
+    reels[0].look.draw.expert.reset();  // it made room for what stands in the other half
+  }
+  if (options.ghost) {
+    Result<Ghost> ghost = ghost_of(*options.ghost, ticks.back());
+    if (!ghost) return ghost.errors();
+    reels[0].ghost = std::move(*ghost);
+  }
+  if (const Result<Done> alike = colour_alike(reels, sessions); !alike) return alike.errors();
+  return reels;
 }
 
 Result<double> full_scale_of(const std::vector<recordings::SessionReader*>& sessions,

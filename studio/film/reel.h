@@ -69,6 +69,16 @@ Result<Reel> make_reel(recordings::SessionReader& session, FrameTicks ticks, con
                        const ExportOptions& options, const std::optional<Seen>& first = {},
                        Between between = Between::replayed);
 
+/// What goes in step: the sessions and the ghost of ExportOptions, which does so as another half would.
+std::vector<recordings::SessionReader*> in_step_with(std::vector<recordings::SessionReader*> sessions,
+                                                     const ExportOptions& options);
+
+/// All sessions that stand side by side, and the ghost. `ticks`: of in_step_with() them. Errors: as make_reel(), of all
+/// of them.
+Result<std::vector<Reel>> make_reels(const std::vector<recordings::SessionReader*>& sessions,
+                                     std::vector<FrameTicks> ticks, const ExportOptions& options,
+                                     Between between = Between::replayed);
+
 /// The value of the last colour of elements in a film of these sessions [the legend's unit]; 0: there are no elements.
 /// Errors: a damaged session.
 Result<double> full_scale_of(const std::vector<recordings::SessionReader*>& sessions, render::ElementQuantity quantity);

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "studio/output/number_text.h"
+#include "studio/output/option_name.h"
+
 namespace ctpm::film {
 namespace {
 
@@ -139,6 +142,39 @@ Result<std::vector<FrameTicks>> schedule(const Sessions& sessions, const Schedul
   if (sessions.size() == 1 && !options.slow.empty())
     return by_knots(sessions, knots_of_slow(*sessions[0], options.slow), options);
   return by_the_clock(sessions, options);
+}
+
+Result<std::vector<FrameTicks>> schedule_moment(const Sessions& sessions, double at_s,
+                                                const std::vector<std::array<double, 2>>& matched) {
+  const double tick = sessions[0]->start().model.tick;
+  const std::int64_t at = std::llround(at_s / tick);
+  if (!(at_s >= 0) || at > sessions[0]->tick_count())
+    return Error{output::option_name("export.at_s"),
+                 "got " + output::short_number(at_s) + ", must be in [0, " +
+                     output::short_number(length_of(*sessions[0])) + "] s, as " + sessions[0]->path() + " is",
+                 ""};
+  Result<std::vector<FrameTicks>> all = schedule(sessions, {{}, tick, matched, {}});
+  if (!all) return all;
+  // The first frame in which the first session is there; before all frames everything stands at its start.
+  std::int64_t low = -1, high = (*all)[0].frame_count - 1;
+  while (low < high) {
+    const std::int64_t middle = low + (high - low) / 2;
+    if ((middle < 0 ? 0 : (*all)[0].tick(middle)) < at)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  for (FrameTicks& ticks : *all) {
+    const std::int64_t there = low < 0 ? 0 : ticks.tick(low);
+    const double share = low < 0 ? 1.0 : ticks.share(low);
+    ticks = {{std::max<std::int64_t>(0, there - 1), there},
+             1,
+             low >= ticks.begun ? 0 : 1,
+             low >= ticks.ended ? 0 : 1,
+             [there](std::int64_t) { return there; },
+             [share](std::int64_t) { return share; }};
+  }
+  return all;
 }
 
 }  // namespace ctpm::film

@@ -38,4 +38,9 @@ inline constexpr double kSlower = 4;
 Result<std::vector<FrameTicks>> schedule(const std::vector<recordings::SessionReader*>& sessions,
                                          const ScheduleOptions& options);
 
+/// The picture of a film of whole sessions in which the first one is at a moment of its own, in seconds; `matched` as
+/// above. Errors: a moment outside of the first session.
+Result<std::vector<FrameTicks>> schedule_moment(const std::vector<recordings::SessionReader*>& sessions, double at_s,
+                                                const std::vector<std::array<double, 2>>& matched);
+
 }  // namespace ctpm::film

@@ -1,13 +1,10 @@
 #include "studio/film/stills.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "studio/film/reel.h"
 #include "studio/output/files.h"
-#include "studio/output/number_text.h"
-#include "studio/output/option_name.h"
 
 namespace ctpm::film {
 namespace {
@@ -68,21 +65,20 @@ Result<std::vector<std::vector<render::Frame>>> draw_stills(const std::vector<re
   return stills;
 }
 
-Result<Done> write_still(recordings::SessionReader& session, const std::string& path, double at_s,
+Result<Done> write_still(const std::vector<recordings::SessionReader*>& sessions, const std::string& path, double at_s,
                          const ExportOptions& options) {
   if (const Result<Done> is_new = output::check_new(path, options.overwrite); !is_new) return is_new.errors();
-  const double tick = session.start().model.tick;
-  const std::int64_t at = std::llround(at_s / tick);
-  if (!(at_s >= 0) || at > session.tick_count())
-    return Error{output::option_name("export.at_s"),
-                 "got " + output::short_number(at_s) + ", must be in [0, " +
-                     output::short_number(double(session.tick_count()) * tick) + "] s, as " + session.path() + " is",
-                 ""};
-  Result<Reel> reel = reel_of({&session}, 0, {at}, {}, options);
-  if (!reel) return reel.errors();
-  Result<Shot> shot = reel->shoot(0);
-  if (!shot) return shot.errors();
-  return render::write_png(path, draw_shot(*reel, *shot, largest_force({&session})));
+  Result<std::vector<FrameTicks>> ticks = schedule_moment(in_step_with(sessions, options), at_s, options.matched);
+  if (!ticks) return ticks.errors();
+  Result<std::vector<Reel>> reels = make_reels(sessions, std::move(*ticks), options, Between::left_out);
+  if (!reels) return reels.errors();
+  std::vector<Shot> shots;
+  for (Reel& reel : *reels) {
+    Result<Shot> shot = reel.shoot(0);
+    if (!shot) return shot.errors();
+    shots.push_back(std::move(*shot));
+  }
+  return render::write_png(path, draw_shots(*reels, shots, largest_force(sessions)));
 }
 
 }  // namespace ctpm::film

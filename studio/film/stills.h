@@ -26,9 +26,9 @@ Result<std::vector<std::vector<render::Frame>>> draw_stills(const std::vector<re
                                                             const std::vector<StillsRequest>& requests,
                                                             const StillCaption& caption, const ExportOptions& options);
 
-/// Writes the picture of one moment of a session, in seconds, in the size and with the overlay of ExportOptions.
-/// `path` ends in .png. Errors: those of draw_stills(), a moment outside the session, a file that exists already.
-Result<Done> write_still(recordings::SessionReader& session, const std::string& path, double at_s,
+/// Writes the picture that a film of these sessions has when the first one is at a moment, in seconds. `path` ends in
+/// .png. Errors: those of draw_stills(), a moment outside the first session, a file that exists already.
+Result<Done> write_still(const std::vector<recordings::SessionReader*>& sessions, const std::string& path, double at_s,
                          const ExportOptions& options);
 
 }  // namespace ctpm::film

@@ -40,6 +40,57 @@ Result<Done> read_picture(Parameters& parameters, film::ExportOptions& options) 
   return Done{};
 }
 
+/// Sessions of which a film or a picture is made.
+struct Filmed {
+  std::vector<recordings::SessionReader> readers;
+  std::vector<recordings::SessionReader*> sessions;  ///< of them, those that stand side by side
+  std::string note;                                  ///< what is left out; empty: nothing
+};
+
+/// A session, and another one beside it or as its ghost.
+struct Pair {
+  std::string path, beside, ghost, align;
+  bool has_expert_line;
+};
+
+Pair read_pair(Parameters& parameters) {
+  Pair pair{parameters.text("path"), parameters.text_if("beside").value_or(""),
+            parameters.text_if("ghost").value_or(""), parameters.text_if("align").value_or(""),
+            parameters.flag("expert_line", true)};
+  if (!pair.beside.empty() && !pair.ghost.empty())
+    parameters.refuse("ghost", "a session has another one beside it or a ghost");
+  return pair;
+}
+
+/// Opens them, and writes to `options` what brings both together.
+Result<Filmed> open_pair(const Pair& pair, const CallContext& context, film::ExportOptions& options) {
+  const auto& [path, beside, ghost, align, has_expert_line] = pair;
+  Filmed filmed;
+  for (const std::string& name : {path, beside, ghost}) {
+    if (name.empty()) continue;
+    Result<recordings::SessionReader> reader = open_reader(context, name);
+    if (!reader) return reader.errors();
+    filmed.readers.push_back(std::move(*reader));
+  }
+  std::vector<recordings::SessionReader*>& sessions = filmed.sessions;
+  for (recordings::SessionReader& reader : filmed.readers) sessions.push_back(&reader);
+  if (sessions.size() < 2) return filmed;
+  Result<compare::MatchedMoments> matched = compare::match_sessions(*sessions[0], *sessions[1], align);
+  if (!matched) return matched.errors();
+  options.matched = std::move(*matched);
+  const Result<Done> same = compare::check_same_scene(*sessions[0], *sessions[1]);
+  if (!same && !ghost.empty()) return same.errors();
+  if (same && has_expert_line) {
+    Result<std::shared_ptr<const render::ExpertCut>> cut = film::expert_cut_of(*sessions[ghost.empty() ? 0 : 1]);
+    if (cut)
+      options.expert = std::move(*cut);
+    else
+      filmed.note = "without the line of the expert's cut: " + to_string(cut.errors()[0]);
+  }
+  if (!ghost.empty()) options.ghost = sessions.back(), sessions.pop_back();
+  return filmed;
+}
+
 /// What lies where that video or its sidecar would be written; empty: nothing.
 std::string in_the_way_of(const std::string& video) {
   std::error_code ignored;
@@ -99,28 +150,27 @@ Result<std::string> name_export(Parameters& parameters, const CallContext& conte
 
 /// The picture of a moment, as `export --at-s` draws it.
 Result<std::string> export_moment(Parameters& parameters, const CallContext& context) {
-  const std::string path = parameters.text("path"), output = parameters.text("output");
+  const Pair pair = read_pair(parameters);
+  const std::string output = parameters.text("output");
   const double at = parameters.number("at_s", 0, 1e9);
   film::ExportOptions options;
   if (!output.empty() && !output.ends_with(".png")) parameters.refuse("output", "the picture of a moment is a .png");
   if (const Result<Done> read = read_picture(parameters, options); !read) return read.errors();
   const Result<std::string> place = context.folder.place(output);
   if (!place) return place.errors();
-  Result<recordings::SessionReader> reader = open_reader(context, path);
-  if (!reader) return reader.errors();
-  const Result<Done> written = film::write_still(*reader, *place, at, options);
+  const Result<Filmed> filmed = open_pair(pair, context, options);
+  if (!filmed) return filmed.errors();
+  const Result<Done> written = film::write_still(filmed->sessions, *place, at, options);
   if (!written) return written.errors();
   if (context.films) context.films->add(*place);
-  return output::JsonWriter().begin_object().member("path", std::string_view(output)).end_object().text();
+  output::JsonWriter json;
+  json.begin_object().member("path", std::string_view(output)).member("note", std::string_view(filmed->note));
+  return json.end_object().text();
 }
 
 Result<std::string> export_session(Parameters& parameters, const CallContext& context) {
-  const std::string path = parameters.text("path"), output = parameters.text("output");
-  const std::string beside = parameters.text_if("beside").value_or("");
-  const std::string ghost = parameters.text_if("ghost").value_or("");
-  const std::string align = parameters.text_if("align").value_or("");
-  const bool has_expert_line = parameters.flag("expert_line", true);
-  if (!beside.empty() && !ghost.empty()) parameters.refuse("ghost", "a video has a session beside it or a ghost");
+  const Pair pair = read_pair(parameters);
+  const std::string output = parameters.text("output");
   film::ExportOptions options;
   options.fps = parameters.number_if("fps", 1, 240).value_or(options.fps);
   options.speed = parameters.number_if("speed", 0.001, 1000).value_or(options.speed);
@@ -132,34 +182,12 @@ Result<std::string> export_session(Parameters& parameters, const CallContext& co
   if (!place) return place.errors();
   if (const std::string file = in_the_way_of(*place); !file.empty())
     return Error{file, "exists already", "choose another name"};
-  std::vector<recordings::SessionReader> readers;
-  for (const std::string& name : {path, beside, ghost}) {
-    if (name.empty()) continue;
-    Result<recordings::SessionReader> reader = open_reader(context, name);
-    if (!reader) return reader.errors();
-    readers.push_back(std::move(*reader));
-  }
-  std::string note;
-  std::vector<recordings::SessionReader*> sessions;
-  for (recordings::SessionReader& reader : readers) sessions.push_back(&reader);
-  if (sessions.size() == 2) {
-    Result<compare::MatchedMoments> matched = compare::match_sessions(*sessions[0], *sessions[1], align);
-    if (!matched) return matched.errors();
-    options.matched = std::move(*matched);
-    const Result<Done> same = compare::check_same_scene(*sessions[0], *sessions[1]);
-    if (!same && !ghost.empty()) return same.errors();
-    if (same && has_expert_line) {
-      Result<std::shared_ptr<const render::ExpertCut>> cut = film::expert_cut_of(*sessions[ghost.empty() ? 0 : 1]);
-      if (cut)
-        options.expert = std::move(*cut);
-      else
-        note = "without the line of the expert's cut: " + to_string(cut.errors()[0]);
-    }
-    if (!ghost.empty()) options.ghost = sessions.back(), sessions.pop_back();
-  }
+  const Result<Filmed> filmed = open_pair(pair, context, options);
+  if (!filmed) return filmed.errors();
+  const std::string& note = filmed->note;
   options.progress = context.progress;
   options.should_stop = context.should_stop;
-  const Result<film::ExportOutcome> outcome = film::export_video(sessions, *place, options);
+  const Result<film::ExportOutcome> outcome = film::export_video(filmed->sessions, *place, options);
   if (!outcome) return outcome.errors();
   if (context.films) context.films->add(*place);
   output::JsonWriter json;

@@ -31,16 +31,16 @@ const kOverlays: [string, string][] = [["full", "full"], ["small", "small"], ["n
 const kAligned: [string, string][] = [["path", "path of the tool, slowing one down"], ["contact", "first contact, slowing one down"], ["cut", "first cut, slowing one down"], ["clock", "both clocks, as they were recorded"]];
 /** How the command brings both together as they are seen here: at an event the page moves one of them, which the command says in
     seconds, by which the clock of the second one shows more: the trainee's, or that of a ghost, which is the expert's. */
-const seenAlign = (player: Player, isGhost: boolean) => player.path ? "path" : player.offset === 0 ? "clock" : String(Number((isGhost ? -player.offset : player.offset).toFixed(6)));
+export const seenAlign = (player: Player, isGhost: boolean) => player.path ? "path" : player.offset === 0 ? "clock" : String(Number((isGhost ? -player.offset : player.offset).toFixed(6)));
 const kNoMoment = { name: "", fault: "" };
 const kNear = 2e-3; // of two times that are one moment [s]
 const kSlow: [string, string][] = [["cut", "cuts"], ["damage", "damage"], ["worst", "largest force and depth"]];
 
 /** What a film is called unless something else is chosen: beside the session, a trainee's beside an expert's or with its ghost after
     both; around a moment, with that. */
-function filmName(path: string, beside: string | undefined, how: "beside" | "ghost", moment: string): string {
+export function filmName(path: string, beside: string | undefined, how: "beside" | "ghost", moment: string, kind = "mp4"): string {
   const stem = (file: string) => file.replace(/\.ctpm$/, "");
-  return `${beside === undefined ? stem(path) : `${stem(beside)}-${how}-${stem(path).replace(/^.*\//, "")}`}${moment}.mp4`;
+  return `${beside === undefined ? stem(path) : `${stem(beside)}-${how}-${stem(path).replace(/^.*\//, "")}`}${moment}.${kind}`;
 }
 
 /** What a film around this moment is to say of a pair's trainee: the worst moment that it is in, else both forces. Empty: nothing. */

@@ -213,7 +213,7 @@ export function Review({ connection, listing, place, onPlace }: {
     notes: <NotesPanel player={shown} notes={notes} />,
     export: (
       <>
-        {!second && <StillForm key={`still ${session.path}`} connection={connection} player={shown} look={look} />}
+        <StillForm key={`still ${session.path} ${second?.session.path ?? ""}`} connection={connection} player={shown} look={look} />
         <ExportForm key={session.path} connection={connection} player={shown} look={look} comparison={comparison} job={exporting} />
       </>
     ),

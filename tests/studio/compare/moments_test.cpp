@@ -59,7 +59,7 @@ TEST_F(WorstMoments, TheWayToTheWorkIsNotBlamed) {
   EXPECT_EQ(compare::compare_sessions(press(), track, scene_).moments.at(0).from_s, 0);
 }
 
-TEST_F(WorstMoments, APauseIsOneFromTheFirstTouchToTheLast) {
+TEST_F(WorstMoments, APauseIsOneFromTheFirstMotionToTheLastTouch) {
   const auto rests = [&](double before, double within, double after) {
     compare::SessionTrack track = new_track();
     const Vec3 above{0, 0, 0.1}, below{0, 0, 0.05};
@@ -73,6 +73,11 @@ TEST_F(WorstMoments, APauseIsOneFromTheFirstTouchToTheLast) {
     return compare::compare_sessions(expert, track, scene_, {.force_limit = 1}).moments;
   };
   EXPECT_TRUE(moments(rests(0, 0, 0), rests(5, 0, 5)).empty());
+  compare::SessionTrack hesitates = new_track();
+  const Vec3 above{0, 0, 0.1}, half{0, 0, 0.08}, below{0, 0, 0.05};
+  go(hesitates, above, half, 0.5), go(hesitates, half, half, 2), go(hesitates, half, below, 0.5);
+  hesitates.force.back() = 0.5;
+  EXPECT_EQ(moments(rests(0, 0, 0), finished(hesitates, scene_.model)).size(), 1u) << "before the first touch";
   // What the expert waited outside of the work allows nobody to rest in it.
   for (const auto& expert : {rests(0, 0, 0), rests(9, 0, 9)}) {
     const std::vector<compare::Moment> found = moments(expert, rests(5, 3, 5));

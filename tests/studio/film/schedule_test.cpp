@@ -182,5 +182,36 @@ TEST_F(Schedule, APartIsThatOfTheFirstSession) {
   EXPECT_NEAR(double(part[1].range.from), double(whole[1].tick(frame)), 1000 * kFrame + 1);
 }
 
+TEST_F(Schedule, AMomentIsThatOfTheFilm) {
+  for (const char* word : {"clock", "contact", "cut", "path", "2", "-2"}) {
+    const auto film = by(word);
+    const auto matched = compare::match_sessions(expert_, clumsy_, word);
+    ASSERT_TRUE(matched) << word;
+    const auto moment_at = [&](std::int64_t tick) {
+      return film::schedule_moment({&expert_, &clumsy_}, double(tick) * expert_.start().model.tick, *matched);
+    };
+    int seen = 0;
+    for (std::int64_t frame = 1; frame + 1 < film[0].frame_count; frame += 7) {
+      const std::int64_t there = film[0].tick(frame);
+      if (film[0].tick(frame - 1) == there || film[0].tick(frame + 1) == there) continue;  // it stands still
+      const auto moment = moment_at(there);
+      ASSERT_TRUE(moment) << word << " " << there;
+      for (const film::FrameTicks& of : *moment) EXPECT_EQ(of.frame_count, 1);
+      EXPECT_EQ((*moment)[0].tick(0), there) << word;
+      // For one tick of a session that is slowed down, there are several of the other.
+      const double most = 1 + std::max(1.0, film[1].share(frame)) / film[0].share(frame);
+      EXPECT_NEAR(double((*moment)[1].tick(0)), double(film[1].tick(frame)), most) << word << " " << there;
+      EXPECT_EQ((*moment)[1].begun == 0, frame >= film[1].begun) << word << " " << there;
+      EXPECT_EQ((*moment)[1].ended == 0, frame >= film[1].ended) << word << " " << there;
+      ++seen;
+    }
+    EXPECT_GT(seen, 5) << word;
+    EXPECT_EQ((*moment_at(0))[0].tick(0), 0) << word;
+    EXPECT_EQ((*moment_at(expert_.tick_count()))[0].tick(0), expert_.tick_count()) << word;
+    EXPECT_FALSE(moment_at(expert_.tick_count() + 1)) << word;
+    EXPECT_FALSE(moment_at(-1)) << word;
+  }
+}
+
 }  // namespace
 }  // namespace ctpm

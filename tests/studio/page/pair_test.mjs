@@ -572,6 +572,13 @@ step("an export is the one that the shown command makes, and can be cancelled", 
   await picture(page, "review-export-ghost");
   await ghost.click();
   await page.locator('.look-bar label:has-text("expert\'s line") input').check();
+  // A picture of both at this moment.
+  await page.click("#panel button:has-text('Save a picture of')");
+  const still = /^(.*-beside-.*s\.png) is written$/.exec(await page.locator("#panel .good", { hasText: "is written" }).innerText())?.[1];
+  const stillCommand = await page.locator("#panel .command code").first().innerText();
+  assert.match(stillCommand, new RegExp(`--at-s [\\d.]+ --beside ${kClumsy} --align -0\\.4`));
+  assert.equal(ctpm(folder, ...stillCommand.replace(still, "still.png").split(" ").slice(1)).code, 0);
+  assert.ok(readFileSync(join(folder, still)).equals(readFileSync(join(folder, "still.png"))));
   // One of them.
   await page.click("#tab-compare");
   await page.locator("#panel select").selectOption("");
