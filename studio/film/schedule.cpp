@@ -169,7 +169,7 @@ Result<std::vector<FrameTicks>> schedule_moment(const Sessions& sessions, double
     const double share = low < 0 ? 1.0 : ticks.share(low);
     ticks = {{std::max<std::int64_t>(0, there - 1), there},
              1,
-             low >= ticks.begun ? 0 : 1,
+             std::max<std::int64_t>(low, 0) >= ticks.begun ? 0 : 1,
              low >= ticks.ended ? 0 : 1,
              [there](std::int64_t) { return there; },
              [share](std::int64_t) { return share; }};

@@ -207,6 +207,7 @@ TEST_F(Schedule, AMomentIsThatOfTheFilm) {
     }
     EXPECT_GT(seen, 5) << word;
     EXPECT_EQ((*moment_at(0))[0].tick(0), 0) << word;
+    EXPECT_EQ((*moment_at(0))[0].begun == 0, film[0].begun == 0) << word << ": its start is not before it";
     EXPECT_EQ((*moment_at(expert_.tick_count()))[0].tick(0), expert_.tick_count()) << word;
     EXPECT_FALSE(moment_at(expert_.tick_count() + 1)) << word;
     EXPECT_FALSE(moment_at(-1)) << word;
