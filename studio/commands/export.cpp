@@ -98,20 +98,11 @@ Result<std::vector<recordings::SessionReader*>> pair_up(std::vector<recordings::
   if (!matched) return matched.errors();
   arguments.options.matched = std::move(*matched);
   const Result<Done> same = compare::check_same_scene(*sessions[0], *sessions[1]);
-  if (!same && arguments.ghost.empty()) print_warnings(same.errors());
-  if (same && !arguments.no_expert_line) {
-    Result<std::shared_ptr<const render::ExpertCut>> cut =
-        film::expert_cut_of(*(arguments.ghost.empty() ? sessions[0] : sessions[1]));
-    if (cut)
-      arguments.options.expert = std::move(*cut);
-    else
-      print_warnings(cut.errors());
-  }
-  if (!arguments.ghost.empty()) {
-    if (!same) return same.errors();
-    arguments.options.ghost = sessions.back();
-    sessions.pop_back();
-  }
+  const bool is_ghost = !arguments.ghost.empty();
+  if (!same && is_ghost) return same.errors();
+  if (!same) print_warnings(same.errors());
+  const Result<Done> line = film::pair_up(sessions, is_ghost, same && !arguments.no_expert_line, arguments.options);
+  if (!line) print_warnings(line.errors());
   return sessions;
 }
 

@@ -80,14 +80,8 @@ Result<Filmed> open_pair(const Pair& pair, const CallContext& context, film::Exp
   options.matched = std::move(*matched);
   const Result<Done> same = compare::check_same_scene(*sessions[0], *sessions[1]);
   if (!same && !ghost.empty()) return same.errors();
-  if (same && has_expert_line) {
-    Result<std::shared_ptr<const render::ExpertCut>> cut = film::expert_cut_of(*sessions[ghost.empty() ? 0 : 1]);
-    if (cut)
-      options.expert = std::move(*cut);
-    else
-      filmed.note = "without the line of the expert's cut: " + to_string(cut.errors()[0]);
-  }
-  if (!ghost.empty()) options.ghost = sessions.back(), sessions.pop_back();
+  const Result<Done> line = film::pair_up(sessions, !ghost.empty(), same && has_expert_line, options);
+  if (!line) filmed.note = "without the line of the expert's cut: " + to_string(line.errors()[0]);
   return filmed;
 }
 

@@ -104,7 +104,7 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
   RunOutcome outcome;
   stepping::StepReport report;
   TickClock clock(model.tick);
-  const double waited = thread_wait();
+  const double waited_before = thread_wait();
   for (std::int64_t tick = 0; options.most_ticks == 0 || tick < options.most_ticks; ++tick) {
     if (options.should_stop && options.should_stop()) break;
     const Clock::time_point waited = Clock::now();
@@ -143,7 +143,7 @@ RunOutcome run_session(const Model& model, State& state, sources::InputSource& s
     if (options.progress)
       options.progress(outcome.ticks, options.most_ticks ? options.most_ticks : source.tick_count());
   }
-  outcome.waited = thread_wait() - waited;
+  outcome.waited = thread_wait() - waited_before;
   watch.finish(outcome.ticks);
   if (outcome.fault.empty()) outcome.fault = source.fault();
   return outcome;
