@@ -50,13 +50,16 @@ void print_outcome(const film::ExportOutcome& outcome) {
                share(times.encoding) + " encoding");
 }
 
-/// Two sessions are shown in videos alone.
+bool is_sheet(const std::string& path) { return path.ends_with(".png"); }
+
+/// Two sessions are shown in videos, and in the picture of a moment.
 Errors check_pair(const ExportArguments& arguments, const std::string& what_output_is) {
   Errors errors;
   for (const auto& [flag, other] : {std::pair{"--beside", &arguments.beside}, {"--ghost", &arguments.ghost}})
     if (!other->empty())
       errors.push_back({flag, "is for videos only, and " + arguments.output + what_output_is,
-                        "give --output a name that ends in .mp4"});
+                        std::string("give --output a name that ends in .mp4") +
+                            (is_sheet(arguments.output) ? ", or a moment with --at-s" : "")});
   return errors;
 }
 
@@ -85,8 +88,6 @@ int run_shapes(const ExportArguments& arguments) {
         is_same ? "same as recorded" : "DIFFERS from what was recorded");
   return is_same ? exit_good : exit_bad_verdict;
 }
-
-bool is_sheet(const std::string& path) { return path.ends_with(".png"); }
 
 /// Of some sessions those that stand side by side; writes to the arguments what brings them together, and the ghost.
 Result<std::vector<recordings::SessionReader*>> pair_up(std::vector<recordings::SessionReader>& readers,
