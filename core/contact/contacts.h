@@ -157,10 +157,13 @@ class LinearisedContacts {
   LinearisedContacts& operator=(const LinearisedContacts&) = delete;
   ~LinearisedContacts() { take_back(); }
 
-  /// result += coupling times `v`, in the precision of `v`, float or double; returns v . coupling . v.
+  /// result += coupling times `v`.
+  void apply(const double* v, double* result) const { contacts_.points_.apply(h_, v, result); }
+
+  /// As above without the diagonal that was added to the blocks, in the precision of `v`, float or double.
   template <class Real>
-  double apply(const Real* v, Real* result) const {
-    return contacts_.points_.apply(h_, v, result);
+  void apply_lagged(const Real* v, Real* result) const {
+    contacts_.points_.apply_lagged(h_, v, result);
   }
 
   /// Whether a contact pulls, or draws its point too far, in a step with velocity `v`.

@@ -117,23 +117,23 @@ Vec3 PointContacts::coupling(const PointContact& c, double h, Vec3 u) const {
   return along * dot(c.axis, u) * c.axis + across * u;
 }
 
-template <class Real>
-double PointContacts::apply(double h, const Real* v, Real* result) const {
+template <bool kLagged, class Real>
+void PointContacts::apply_of(double h, const Real* v, Real* result) const {
   const std::size_t n = model_.sphere_count();
-  double energy = 0;
   for (const PointContact& c : contacts_) {
-    const Vec3 u = velocity_of(c, v), q = coupling(c, h, u);
+    const Vec3 all = coupling(c, h, velocity_of(c, v));
     for (auto e = std::size_t(c.first); e < std::size_t(c.first + c.count); ++e) {
       const auto i = std::size_t(sphere_[e]);
+      Vec3 q = all;
+      if (kLagged) q -= coupling(c, h, weight_[e] * Vec3{v[i], v[n + i], v[2 * n + i]});
       result[i] += Real(weight_[e] * q.x), result[n + i] += Real(weight_[e] * q.y);
       result[2 * n + i] += Real(weight_[e] * q.z);
     }
-    energy += dot(u, q);
   }
-  return energy;
 }
-template double PointContacts::apply(double h, const float* v, float* result) const;
-template double PointContacts::apply(double h, const double* v, double* result) const;
+template void PointContacts::apply_of<false>(double h, const double* v, double* result) const;
+template void PointContacts::apply_of<true>(double h, const float* v, float* result) const;
+template void PointContacts::apply_of<true>(double h, const double* v, double* result) const;
 
 bool PointContacts::pulls(const PointContact& c, double h, const elements::Coordinates& v) const {
   return c.only_pushes && dot(c.axis, c.force - coupling(c, h, velocity_of(c, v.data())) / h) < 0;

@@ -102,10 +102,14 @@ class PointContacts {
   /// arrays must be taken back first.
   void undo_linearise(elements::Coordinates& force, elements::DiagonalBlocks& blocks);
 
-  /// result += coupling of a step of `h` [s] times `v`, in the precision of `v`, float or double.
-  /// Returns v . coupling . v.
+  /// result += coupling of a step of `h` [s] times `v`.
+  void apply(double h, const double* v, double* result) const { apply_of<false>(h, v, result); }
+
+  /// As above without the diagonal that linearise() added to the blocks, in the precision of `v`, float or double.
   template <class Real>
-  double apply(double h, const Real* v, Real* result) const;
+  void apply_lagged(double h, const Real* v, Real* result) const {
+    apply_of<true>(h, v, result);
+  }
 
   /// Whether a contact would pull, or draw its point too far, in a step of `h` [s] with velocity `v` [m/s].
   bool has_wrong(double h, const elements::Coordinates& v) const;
@@ -122,6 +126,8 @@ class PointContacts {
   template <class Real>
   Vec3 velocity_of(const PointContact& contact, const Real* v) const;
   Vec3 coupling(const PointContact& contact, double h, Vec3 u) const;
+  template <bool kLagged, class Real>
+  void apply_of(double h, const Real* v, Real* result) const;
   bool pulls(const PointContact& contact, double h, const elements::Coordinates& v) const;
   bool overtakes(const PointContact& contact, double h, const elements::Coordinates& v) const;
 

@@ -77,7 +77,7 @@ void AxialForces::add_places(const Run& run) {
 }
 
 AxialForces::AxialForces(const Model& model, const parallel::Slabs& slabs, const Kernels& kernels)
-    : model_(model), kernels_(kernels), of_slab_(std::size_t(slabs.count())) {
+    : model_(model), slabs_(slabs), kernels_(kernels), of_slab_(std::size_t(slabs.count())) {
   const AxialElements& axial = model.axial;
   of_internal_.resize(axial.internal_count());
   for (std::size_t i = 0; i < axial.internal.size(); ++i)
@@ -122,28 +122,47 @@ void AxialForces::add_forces(const AxialArrays& m, int slab) const {
 }
 
 void AxialForces::prepare_linearise() {
-  if (across_.size() == place_count_) return;
-  for (auto* array : {&root_[0], &root_[1], &root_[2], &across_}) array->assign(place_count_, 0.0f);
+  if (!sweeps_.empty()) return;
+  for (auto* array : {&root_[0], &root_[1], &root_[2], &across_})
+    array->assign(place_count_ + 2 * std::size_t(kLanes), 0.0f);
+  for (int slab = 0; slab < slabs_.count(); ++slab)
+    sweeps_.emplace_back(of_slab_[std::size_t(slab)], slabs_.begin(slab), slabs_.end(slab));
 }
 
 void AxialForces::linearise(AxialArrays m, int slab) {
-  m.root_x = root_[0].data(), m.root_y = root_[1].data(), m.root_z = root_[2].data(), m.across = across_.data();
+  m.root_x = root_[0].data() + kLanes, m.root_y = root_[1].data() + kLanes, m.root_z = root_[2].data() + kLanes;
+  m.across = across_.data() + kLanes;
   const Batches& batches = of_slab_[std::size_t(slab)];
   kernels_.linearise_axial(m, batches.data(), batches.data() + batches.size());
 }
 
-template <class Real>
-void AxialForces::apply(int slab, const Real* v, SlabTarget<Real> result) const {
+SweepCoupling AxialForces::sweep_coupling() const {
+  return {root_[0].data() + kLanes, root_[1].data() + kLanes, root_[2].data() + kLanes, across_.data() + kLanes};
+}
+
+/// Arrays for loops that only read the coupling.
+AxialArrays AxialForces::coupling_arrays() const {
+  const SweepCoupling c = sweep_coupling();
   AxialArrays m{};
   m.spheres = model_.sphere_count();
-  // The loops only read these here.
-  m.root_x = const_cast<float*>(root_[0].data()), m.root_y = const_cast<float*>(root_[1].data());
-  m.root_z = const_cast<float*>(root_[2].data()), m.across = const_cast<float*>(across_.data());
-  const Batches& batches = of_slab_[std::size_t(slab)];
-  solver_kernels<Real>(kernels_).apply_axial(m, batches.data(), batches.data() + batches.size(), v, result);
+  m.root_x = const_cast<float*>(c.root_x), m.root_y = const_cast<float*>(c.root_y);
+  m.root_z = const_cast<float*>(c.root_z), m.across = const_cast<float*>(c.across);
+  return m;
 }
-template void AxialForces::apply(int slab, const float* v, SlabTarget<float> result) const;
-template void AxialForces::apply(int slab, const double* v, SlabTarget<double> result) const;
+
+void AxialForces::apply(int slab, const double* v, SlabTarget<double> result) const {
+  const Batches& batches = of_slab_[std::size_t(slab)];
+  kernels_.apply_axial(coupling_arrays(), batches.data(), batches.data() + batches.size(), v, result);
+}
+
+template <class Real>
+void AxialForces::apply_lagged(int slab, const Real* v, SlabTarget<Real> result) const {
+  const Batches& batches = sweeps_[std::size_t(slab)].lagged();
+  solver_kernels<Real>(kernels_).apply_axial_across(coupling_arrays(), batches.data(), batches.data() + batches.size(),
+                                                    v, result);
+}
+template void AxialForces::apply_lagged(int slab, const float* v, SlabTarget<float> result) const;
+template void AxialForces::apply_lagged(int slab, const double* v, SlabTarget<double> result) const;
 
 /// Share of a step of `h` [s] after which the elongation of a TPM acts: 0.5 as in the midpoint rule, or more where that
 /// would overshoot the limit.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/elements/kernels/kernels.h"
+#include "core/elements/sweeps.h"
 #include "core/model/model.h"
 #include "core/model/state_view.h"
 #include "core/parallel/slabs.h"
@@ -35,9 +36,16 @@ class AxialForces {
   /// for apply(). prepare_kelvin() must have been called for the same step.
   void linearise(AxialArrays m, int slab);
 
-  /// result += coupling times `v`, in the precision of `v`, float or double.
+  /// result += coupling times `v`.
+  void apply(int slab, const double* v, SlabTarget<double> result) const;
+
+  /// As above, of what the pieces of the sweeps leave out, in the precision of `v`, float or double.
   template <class Real>
-  void apply(int slab, const Real* v, SlabTarget<Real> result) const;
+  void apply_lagged(int slab, const Real* v, SlabTarget<Real> result) const;
+
+  /// What the solver's sweeps through a slab need of the last linearise().
+  Sweep sweep(int slab) const { return sweeps_[std::size_t(slab)].sweep(); }
+  SweepCoupling sweep_coupling() const;
 
   /// Whether find_kelvin() finds elongations at the end of a step, or those that act in it.
   enum class KelvinAt { end, acting };
@@ -59,6 +67,7 @@ class AxialForces {
     AxialLaw law;                       ///< of the batch
   };
 
+  AxialArrays coupling_arrays() const;
   Run find_run(std::size_t first, const parallel::Slabs& slabs) const;
   std::vector<double> parameters_of(const Run& run) const;
   void add_places(const Run& run);
@@ -76,6 +85,7 @@ class AxialForces {
   using Batches = std::vector<AxialBatch>;
 
   const Model& model_;
+  const parallel::Slabs& slabs_;
   const Kernels& kernels_;
   std::vector<Batches> of_slab_;  ///< of each slab, the batches that add to its spheres (slab_count)
   std::vector<double> parameters_;
@@ -85,8 +95,10 @@ class AxialForces {
   std::vector<std::int32_t> of_internal_;  ///< row of Model::axial that has the internal variable (internal_count)
   KelvinSteps kelvin_, kelvin_before_;     ///< SDIRK2 and what it falls back to take steps of two lengths
   std::size_t place_count_ = 0;
-  std::vector<float> root_[3];  ///< direction times the root of the axial coupling [kg^1/2]; empty until needed
-  std::vector<float> across_;   ///< coupling across the direction: h^2 tension / length [kg], >= 0
+  /// Coupling of each place, from the kLanes-th number on, followed by kLanes more: direction times the root of the
+  /// axial part [kg^1/2], and the part across it, h^2 tension / length [kg], >= 0. Empty until needed.
+  std::vector<float> root_[3], across_;
+  std::vector<Sweeps> sweeps_;  ///< empty until needed (slab_count)
 };
 
 }  // namespace ctpm::elements

@@ -113,6 +113,32 @@ void Elements::linearise_of(int slab, Arrays arrays, double h, bool with_dashpot
   bring(own, 3, force.data()), bring(own_blocks, 6, blocks.data());
 }
 
+void Elements::apply(const double* v, double* result) const {
+  team_.for_each(slabs_.count(), [&](int slab) {
+    const SlabTarget<double> own = target_for(slab, 3, result);
+    constraints_.apply(slab, v, own);
+    angles_.apply(slab, v, own);
+    axial_.apply(slab, v, own);
+    bring(own, 3, result);
+  });
+}
+
+template <class Real>
+void Elements::apply_lagged(const Real* v, Real* result) const {
+  const std::size_t n = std::size_t(slabs_.end(slabs_.count() - 1));
+  team_.for_each(slabs_.count(), [&](int slab) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      std::fill(result + axis * n + slabs_.begin(slab), result + axis * n + slabs_.end(slab), Real(0));
+    const SlabTarget<Real> own = target_for(slab, 3, result);
+    constraints_.apply_lagged(slab, v, own);
+    angles_.apply_lagged(slab, v, own);
+    axial_.apply_lagged(slab, v, own);
+    bring(own, 3, result);
+  });
+}
+template void Elements::apply_lagged(const float* v, float* result) const;
+template void Elements::apply_lagged(const double* v, double* result) const;
+
 void Elements::find_kelvin_of(double h, AxialForces::KelvinAt at, const StateView& state, std::vector<double>& kelvin) {
   if (state.kelvin_elongation.empty()) return;
   axial_.prepare_kelvin(h, at);

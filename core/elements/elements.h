@@ -34,10 +34,17 @@ class Elements {
   void linearise(const StateView& state, double h, bool with_dashpots, Coordinates& force, DiagonalBlocks& blocks,
                  Before&& before);
 
-  /// result += (h^2 K + h C) v as of the last linearise(), in the precision of `v`, float or double (3 x sphere_count
-  /// each). Calls after(slab) when the part of `result` that belongs to a slab is complete.
-  template <class Real, class After>
-  void apply(const Real* v, Real* result, After&& after) const;
+  /// result += (h^2 K + h C) v as of the last linearise() (3 x sphere_count each).
+  void apply(const double* v, double* result) const;
+
+  /// result = what the sweeps leave out of (h^2 K + h C) v, in the precision of `v`, float or double (3 x sphere_count
+  /// each): the coupling of lines, and of spheres of two slabs, without the diagonal blocks.
+  template <class Real>
+  void apply_lagged(const Real* v, Real* result) const;
+
+  /// What the solver's sweeps through a slab need of the last linearise().
+  Sweep sweep(int slab) const { return axial_.sweep(slab); }
+  SweepCoupling sweep_coupling() const { return axial_.sweep_coupling(); }
 
   /// Kelvin elongations of the two-sphere TPMs [m] at the end of a step of `h` [s] that starts from
   /// StateView::kelvin_elongation and ends with the spheres at StateView::position. First order (internal_count).
@@ -109,18 +116,6 @@ void Elements::linearise(const StateView& state, double h, bool with_dashpots, C
   measure(all);
   team_.for_each(slabs_.count(),
                  [&](int slab) { before(slab), linearise_of(slab, all, h, with_dashpots, force, blocks); });
-}
-
-template <class Real, class After>
-void Elements::apply(const Real* v, Real* result, After&& after) const {
-  team_.for_each(slabs_.count(), [&](int slab) {
-    const SlabTarget<Real> own = target_for(slab, 3, result);
-    constraints_.apply(slab, v, own);
-    angles_.apply(slab, v, own);
-    axial_.apply(slab, v, own);
-    bring(own, 3, result);
-    after(slab);
-  });
 }
 
 }  // namespace ctpm::elements

@@ -112,7 +112,7 @@ LineElements::LineElements(const Model& model, bool is_constraint, const std::ve
     }
     of_slab_.push_back({first_batch, batches_.size()});
   }
-  matters_.resize(batches_.size());
+  weight_.resize(batches_.size());
   lambda_.resize(k_.size());
 }
 
@@ -150,22 +150,38 @@ void LineElements::linearise(LineArrays m, int slab) {
   m.along_x = along_[0].data(), m.along_y = along_[1].data(), m.along_z = along_[2].data(),
   m.isotropic = isotropic_.data();
   const Range range = of_slab_[std::size_t(slab)];
-  for (std::size_t i = range.first; i < range.last; ++i) matters_[i] = kernels_.linearise_line(m, batches_[i]) ? 1 : 0;
+  for (std::size_t i = range.first; i < range.last; ++i) weight_[i] = kernels_.linearise_line(m, batches_[i]);
+}
+
+/// Arrays for loops that only read the coupling.
+LineArrays LineElements::coupling_arrays() const {
+  LineArrays m{};
+  m.spheres = model_.sphere_count();
+  m.a = first_.data(), m.c = middle_.data(), m.e = last_.data();
+  m.along_x = const_cast<float*>(along_[0].data()), m.along_y = const_cast<float*>(along_[1].data());
+  m.along_z = const_cast<float*>(along_[2].data()), m.isotropic = const_cast<float*>(isotropic_.data());
+  return m;
 }
 
 template <class Real>
 void LineElements::apply(int slab, const Real* v, SlabTarget<Real> result) const {
-  LineArrays m{};
-  m.spheres = model_.sphere_count();
-  m.a = first_.data(), m.c = middle_.data(), m.e = last_.data();
-  // The loops only read these here.
-  m.along_x = const_cast<float*>(along_[0].data()), m.along_y = const_cast<float*>(along_[1].data());
-  m.along_z = const_cast<float*>(along_[2].data()), m.isotropic = const_cast<float*>(isotropic_.data());
+  const LineArrays m = coupling_arrays();
   const Range range = of_slab_[std::size_t(slab)];
   for (std::size_t i = range.first; i < range.last; ++i)
-    if (matters_[i] != 0) solver_kernels<Real>(kernels_).apply_line(m, batches_[i], v, result);
+    if (weight_[i] != LineWeight::negligible) solver_kernels<Real>(kernels_).apply_line(m, batches_[i], v, result);
 }
 template void LineElements::apply(int slab, const float* v, SlabTarget<float> result) const;
 template void LineElements::apply(int slab, const double* v, SlabTarget<double> result) const;
+
+template <class Real>
+void LineElements::apply_lagged(int slab, const Real* v, SlabTarget<Real> result) const {
+  apply(slab, v, result);
+  const LineArrays m = coupling_arrays();
+  const Range range = of_slab_[std::size_t(slab)];
+  for (std::size_t i = range.first; i < range.last; ++i)
+    if (weight_[i] == LineWeight::full) solver_kernels<Real>(kernels_).take_line_blocks(m, batches_[i], v, result);
+}
+template void LineElements::apply_lagged(int slab, const float* v, SlabTarget<float> result) const;
+template void LineElements::apply_lagged(int slab, const double* v, SlabTarget<double> result) const;
 
 }  // namespace ctpm::elements

@@ -42,11 +42,17 @@ class LineElements {
   template <class Real>
   void apply(int slab, const Real* v, SlabTarget<Real> result) const;
 
+  /// As above, without the diagonal that linearise() added to the blocks.
+  template <class Real>
+  void apply_lagged(int slab, const Real* v, SlabTarget<Real> result) const;
+
  private:
   /// The batches [first, last) of one slab.
   struct Range {
     std::size_t first, last;
   };
+
+  LineArrays coupling_arrays() const;
 
   LineElements(const Model& model, bool is_constraint, const std::vector<std::int32_t>& first,
                const std::vector<std::int32_t>& middle, const std::vector<std::int32_t>& last,
@@ -58,9 +64,9 @@ class LineElements {
   std::vector<std::int32_t> first_, middle_, last_, line_;  ///< spheres and line of each place (place_count)
   std::vector<double> k_;                                   ///< (place_count)
   std::vector<LineBatch> batches_;
-  std::vector<Range> of_slab_;         ///< (slab_count)
-  std::vector<std::uint8_t> matters_;  ///< of each batch, whether its coupling matters
-  std::vector<double> lambda_;         ///< before softening [N/m] (place_count)
+  std::vector<Range> of_slab_;      ///< (slab_count)
+  std::vector<LineWeight> weight_;  ///< of each batch's coupling
+  std::vector<double> lambda_;      ///< before softening [N/m] (place_count)
   /// Coupling: its root along u [kg^1/2], and the part equal in all directions [kg] (place_count each).
   std::vector<float> along_[3], isotropic_;
 };

@@ -162,10 +162,9 @@ LinearisedResistance::~LinearisedResistance() {
   r.is_linearised_ = false;
 }
 
-template <class Real>
-double LinearisedResistance::apply(const Real* v, Real* result) const {
+template <bool kLagged, class Real>
+void LinearisedResistance::apply_of(const Real* v, Real* result) const {
   const std::size_t n = resistance_.model_.sphere_count();
-  double energy = 0;
   resistance_.for_each_pressed([&](const Resistance::Pressed& p) {
     const auto velocity_of = [&](std::int32_t sphere) {
       const auto i = std::size_t(sphere);
@@ -174,17 +173,17 @@ double LinearisedResistance::apply(const Real* v, Real* result) const {
     const Vec3 at_corner = velocity_of(p.sphere[0]);
     double rate = 0;
     for (std::size_t i = 0; i < 3; ++i) rate += dot(p.gradient[i], velocity_of(p.sphere[i + 1]) - at_corner);
-    const double push = h_ * h_ * p.k * rate;
     for (std::size_t i = 0; i < 4; ++i) {
       const auto sphere = std::size_t(p.sphere[i]);
-      const Vec3 q = push * p.at(i);
+      const Vec3 g = p.at(i);
+      const double own = kLagged ? dot(g, velocity_of(p.sphere[i])) : 0.0;
+      const Vec3 q = h_ * h_ * p.k * (rate - own) * g;
       result[sphere] += Real(q.x), result[n + sphere] += Real(q.y), result[2 * n + sphere] += Real(q.z);
     }
-    energy += rate * push;
   });
-  return energy;
 }
-template double LinearisedResistance::apply(const float* v, float* result) const;
-template double LinearisedResistance::apply(const double* v, double* result) const;
+template void LinearisedResistance::apply_of<false>(const double* v, double* result) const;
+template void LinearisedResistance::apply_of<true>(const float* v, float* result) const;
+template void LinearisedResistance::apply_of<true>(const double* v, double* result) const;
 
 }  // namespace ctpm::inversion

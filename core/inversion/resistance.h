@@ -93,12 +93,19 @@ class LinearisedResistance {
   LinearisedResistance& operator=(const LinearisedResistance&) = delete;
   ~LinearisedResistance();
 
-  /// result += h^2 K times `v`, in the precision of `v`, float or double (3 x sphere_count); returns v . h^2 K . v.
+  /// result += h^2 K times `v` (3 x sphere_count each).
+  void apply(const double* v, double* result) const { apply_of<false>(v, result); }
+
+  /// As above without the diagonal that was added to the blocks, in the precision of `v`, float or double.
   template <class Real>
-  double apply(const Real* v, Real* result) const;
+  void apply_lagged(const Real* v, Real* result) const {
+    apply_of<true>(v, result);
+  }
 
  private:
   friend class Resistance;
+  template <bool kLagged, class Real>
+  void apply_of(const Real* v, Real* result) const;
   LinearisedResistance(Resistance& resistance, const StateView& state, double h, elements::Coordinates& force,
                        elements::DiagonalBlocks& blocks);
 

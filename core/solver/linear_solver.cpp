@@ -6,26 +6,25 @@ namespace {
 /// Largest stiffness ratio at which float resolves soft motions beside stiff ones.
 constexpr double kStiffestForFloat = 1e4;
 
-std::variant<ConjugateGradient<float>, ConjugateGradient<double>> gradient_for(const Model& model,
-                                                                               const parallel::Slabs& slabs,
+std::variant<ConjugateGradient<float>, ConjugateGradient<double>> gradient_for(const elements::Elements& elements,
                                                                                parallel::Team& team,
                                                                                const elements::Kernels& kernels,
                                                                                double stiffness_ratio) {
-  if (stiffness_ratio <= kStiffestForFloat) return ConjugateGradient<float>(model.mass, slabs, team, kernels);
-  return ConjugateGradient<double>(model.mass, slabs, team, kernels);
+  if (stiffness_ratio <= kStiffestForFloat) return ConjugateGradient<float>(elements, team, kernels);
+  return ConjugateGradient<double>(elements, team, kernels);
 }
 
 }  // namespace
 
-LinearSolver::LinearSolver(const Model& model, const parallel::Slabs& slabs, parallel::Team& team,
+LinearSolver::LinearSolver(const Model& model, const elements::Elements& elements, parallel::Team& team,
                            const elements::Kernels& kernels, double stiffness_ratio)
     : model_(model),
-      slabs_(slabs),
+      slabs_(elements.slabs()),
       team_(team),
       kernels_(kernels),
       residual_(3 * model.sphere_count()),
-      parts_(std::size_t(slabs.count())),
-      gradient_(gradient_for(model, slabs, team, kernels, stiffness_ratio)) {
+      parts_(std::size_t(slabs_.count())),
+      gradient_(gradient_for(elements, team, kernels, stiffness_ratio)) {
   for (std::size_t i = 0; i < model.sphere_count(); ++i)
     if (model.held_axes[i] != 0) held_.push_back(std::int32_t(i));
 }
@@ -45,32 +44,24 @@ void LinearSolver::set_blocks_of(ConjugateGradient<Real>& gradient, const elemen
                                  std::span<const std::int32_t> pinned) {
   const std::size_t n = model_.sphere_count();
   const elements::SolverKernels<Real>& kernels = elements::solver_kernels<Real>(kernels_);
-  std::vector<Real>& inverse = gradient.inverse();
+  std::vector<Real>& factor = gradient.factor();
   team_.for_each(slabs_.count(), [&](int slab) {
-    kernels.invert_blocks(n, blocks.data(), inverse.data(), std::size_t(slabs_.begin(slab)),
+    kernels.factor_blocks(n, blocks.data(), factor.data(), std::size_t(slabs_.begin(slab)),
                           std::size_t(slabs_.end(slab)));
   });
+  constexpr std::uint8_t kAxes[6] = {1, 3, 5, 2, 6, 4};  // which axes xx, xy, xz, yy, yz, zz belong to
   const auto hold = [&](std::size_t sphere, std::uint8_t axes) {
-    constexpr std::uint8_t kAxes[6] = {1, 3, 5, 2, 6, 4};  // which axes xx, xy, xz, yy, yz, zz belong to
-    for (std::size_t k = 0; k < 6; ++k)
-      if ((kAxes[k] & axes) != 0) inverse[k * n + sphere] = 0;
-  };
-  for (const std::int32_t sphere : held_) {
-    const auto i = std::size_t(sphere);
-    if (model_.held_axes[i] != kAnchored) {
-      // Inverts the block of the free axes by itself.
-      double own[6];
-      Real free[6];
-      for (std::size_t k = 0; k < 6; ++k) own[k] = blocks[k * n + i];
-      const auto is_held = [&](int axis) { return (model_.held_axes[i] >> axis & 1) != 0; };
-      if (is_held(0) || is_held(1)) own[1] = 0;
-      if (is_held(0) || is_held(2)) own[2] = 0;
-      if (is_held(1) || is_held(2)) own[4] = 0;
-      kernels.invert_blocks(1, own, free, 0, 1);
-      for (std::size_t k = 0; k < 6; ++k) inverse[k * n + i] = free[k];
+    // Factors the block of the free axes by itself.
+    double own[6];
+    Real free[6];
+    for (std::size_t k = 0; k < 6; ++k) {
+      const bool is_diagonal = k == 0 || k == 3 || k == 5;
+      own[k] = is_diagonal || (kAxes[k] & axes) == 0 ? blocks[k * n + sphere] : 0.0;
     }
-    hold(i, model_.held_axes[i]);
-  }
+    kernels.factor_blocks(1, own, free, 0, 1);
+    for (std::size_t k = 0; k < 6; ++k) factor[k * n + sphere] = (kAxes[k] & axes) == 0 ? free[k] : Real(0);
+  };
+  for (const std::int32_t sphere : held_) hold(std::size_t(sphere), model_.held_axes[std::size_t(sphere)]);
   for (const std::int32_t sphere : pinned)
     if (sphere >= 0) hold(std::size_t(sphere), kAnchored);
 }

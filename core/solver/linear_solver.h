@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/elements/axial.h"
+#include "core/elements/elements.h"
 #include "core/model/model.h"
 #include "core/parallel/slabs.h"
 #include "core/parallel/team.h"
@@ -40,19 +40,19 @@ class LinearSolver {
  public:
   /// `stiffness_ratio` is a bound on the largest eigenvalue of M^-1 (A - M) [1]; it decides whether corrections are
   /// computed in float.
-  LinearSolver(const Model& model, const parallel::Slabs& slabs, parallel::Team& team, const elements::Kernels& kernels,
-               double stiffness_ratio);
+  LinearSolver(const Model& model, const elements::Elements& elements, parallel::Team& team,
+               const elements::Kernels& kernels, double stiffness_ratio);
 
   /// Sets the diagonal blocks of A. Coordinates held by Model::held_axes, and the spheres `pinned` (-1: none), keep the
   /// first guess: their rows are left out of the system.
   void set_blocks(const elements::DiagonalBlocks& blocks, std::span<const std::int32_t> pinned);
 
   /// `x` is the first guess and the result. `guess_energy` is given if `x` is all zero because it is the change of a
-  /// velocity; it is then energy_of() that velocity. `add_coupling` as in ConjugateGradient, for vectors of float and
-  /// of double.
-  template <class AddCoupling>
+  /// velocity; it is then energy_of() that velocity. `add_coupling(in, out)` does out += coupling times in, for vectors
+  /// of double; `apply_lagged` is as in ConjugateGradient, for vectors of float and of double.
+  template <class AddCoupling, class ApplyLagged>
   SolverOutcome solve(const elements::Coordinates& b, elements::Coordinates& x, std::optional<double> guess_energy,
-                      const SolverLimits& limits, AddCoupling&& add_coupling);
+                      const SolverLimits& limits, AddCoupling&& add_coupling, ApplyLagged&& apply_lagged);
 
   /// v . M v [J], twice the kinetic energy of velocity `v` [m/s].
   double energy_of(const elements::Coordinates& v);
@@ -65,7 +65,7 @@ class LinearSolver {
   /// Factor by which one round with vectors of Real may reduce the energy of the residual; a smaller one is lost in
   /// rounding.
   template <class Real>
-  static constexpr double kGain = sizeof(Real) == sizeof(float) ? 1e-10 : 0.0;
+  static constexpr double kGain = sizeof(Real) == sizeof(float) ? 1e-10 : 1e-24;
 
   const Model& model_;
   const parallel::Slabs& slabs_;
@@ -77,10 +77,10 @@ class LinearSolver {
   std::variant<ConjugateGradient<float>, ConjugateGradient<double>> gradient_;
 };
 
-template <class AddCoupling>
+template <class AddCoupling, class ApplyLagged>
 SolverOutcome LinearSolver::solve(const elements::Coordinates& b, elements::Coordinates& x,
                                   std::optional<double> guess_energy, const SolverLimits& limits,
-                                  AddCoupling&& add_coupling) {
+                                  AddCoupling&& add_coupling, ApplyLagged&& apply_lagged) {
   const std::size_t n = model_.sphere_count();
   SolverOutcome outcome;
   std::int32_t left = limits.max_iterations;
@@ -93,7 +93,7 @@ SolverOutcome LinearSolver::solve(const elements::Coordinates& b, elements::Coor
           if (is_zero)
             std::fill(residual_.begin(), residual_.end(), 0.0);
           else
-            add_coupling(static_cast<const double*>(x.data()), residual_.data(), [](int) {});
+            add_coupling(static_cast<const double*>(x.data()), residual_.data());
           const double squared = sum_over_slabs(slabs_, team_, parts_, [&](std::size_t begin, std::size_t end) {
             return kernels_.residual_from(n, b.data(), residual_.data(), begin, end);
           });
@@ -105,7 +105,7 @@ SolverOutcome LinearSolver::solve(const elements::Coordinates& b, elements::Coor
                               limits.absolute * limits.absolute);
           }
           const std::int32_t before = left;
-          const double reached = gradient.descend(std::max(enough * unit, energy * kGain<Real>), left, add_coupling);
+          const double reached = gradient.descend(std::max(enough * unit, energy * kGain<Real>), left, apply_lagged);
           if (left != before) gradient.add_to(x);
           outcome.converged = reached <= enough * unit;
           outcome.residual = first_energy > 0 ? std::sqrt(reached / unit / first_energy) : 0.0;

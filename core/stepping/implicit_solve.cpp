@@ -19,7 +19,7 @@ constexpr int kContactRounds = 4;
 ImplicitSolve::ImplicitSolve(const StepContext& context)
     : context_(context),
       held_(context.model, context.elements.slabs()),
-      solver_(context.model, context.elements.slabs(), context.team, context.kernels,
+      solver_(context.model, context.elements, context.team, context.kernels,
               stiffness_ratio_bound(context.model, context.model.tick / context.model.solver.substeps)),
       force_(3 * context.model.sphere_count()),
       momentum_(3 * context.model.sphere_count()),
@@ -106,13 +106,16 @@ void ImplicitSolve::solve_contacts(const Beginning& beginning, contact::Implicit
     contact::LinearisedContacts linearised = contacts.linearise(force_, blocks_);
     context_.team.for_each(slabs.count(), [&](int slab) { find_momentum(beginning, step.h, slab); });
     solver_.set_blocks(blocks_, std::array{step.pins[0].sphere, step.pins[1].sphere});
-    const solver::SolverOutcome outcome =
-        solver_.solve(momentum_, change, round == 0 ? beginning.prediction_energy : std::nullopt, limits_,
-                      [&](const auto* in, auto* out, auto&& after) {
-                        context_.elements.apply(in, out, after);
-                        const double of_cells = resistance.apply(in, out);
-                        return of_cells + linearised.apply(in, out);
-                      });
+    const solver::SolverOutcome outcome = solver_.solve(
+        momentum_, change, round == 0 ? beginning.prediction_energy : std::nullopt, limits_,
+        [&](const double* in, double* out) {
+          context_.elements.apply(in, out);
+          resistance.apply(in, out), linearised.apply(in, out);
+        },
+        [&](const auto* in, auto* out) {
+          context_.elements.apply_lagged(in, out);
+          resistance.apply_lagged(in, out), linearised.apply_lagged(in, out);
+        });
     report.iterations += outcome.iterations;
     report.residual = outcome.residual;
     if (!outcome.converged) report.status = StepStatus::not_converged;
@@ -150,8 +153,8 @@ void ImplicitSolve::report_forces(const Beginning& beginning, const contact::Con
   const std::size_t n = model.sphere_count();
   if (contact::any_held(step.pins)) {
     std::fill(momentum_.begin(), momentum_.end(), 0.0);
-    context_.elements.apply(static_cast<const double*>(change.data()), momentum_.data(), [](int) {});
-    (void)resistance.apply(static_cast<const double*>(change.data()), momentum_.data());
+    context_.elements.apply(change.data(), momentum_.data());
+    resistance.apply(change.data(), momentum_.data());
   }
   for (std::size_t hand = 0; hand < kMostHands; ++hand) {
     const contact::Pin& pin = step.pins[hand];

@@ -341,6 +341,34 @@ inline constexpr GoldenRow kGoldenRevision22[] = {
     {"crumbs, auto", {0x7dbfc1a5b048509e, 0x087432173b042b76, 0x806836eb3478b758, 0x6293285d0784acc4}},
 };
 
+inline constexpr GoldenRow kGoldenRevision23[] = {
+    {"full, sdirk2", {0xf7d91909688e9386, 0xaa4e28f19df69c50, 0x3544e31d68164751, 0xc5d924e20921046b}},
+    {"wedge, sdirk2", {0xf7d91909688e9386, 0xaa4e28f19df69c50, 0xa0b8269a4d1fdbef, 0x5c735f71b3057342}},
+    {"crumbs, sdirk2", {0x49a064c72a46500b, 0xebc4a9cb043f2988, 0xcaec63e09f30f20d, 0x79594ba391a9d57e}},
+    {"light, backward-euler", {0xfce938316e2cdcc4, 0x943b3e3748b4a899, 0xeb6ce4f29619df07, 0x7fb7782ae1ed5bc9}},
+    {"light, sdirk2", {0xf799bf7421823dc2, 0xbbb0ed88cd9ae829, 0x8ed5a885e5fc2033, 0x22a473d73dcb1785}},
+    {"resisting, sdirk2", {0x9a33fe579fb87174, 0x7fac2474c2b7bdb2, 0x24123b01fde3f665, 0x25626c91995b8daf}},
+    {"long strip, sdirk2", {0x8c6d2a8332d9ea84, 0xcc0315ee2ddde686, 0x8b4640d5c2e6e437, 0x3fa292cce69103d1}},
+    {"skinned, sdirk2", {0x2477eaf59f2bf750, 0x59dc62e3e109d86b, 0x6f7362481cb3a001, 0xc597cfa067391896}},
+    {"touched cut, sdirk2", {0x29b0ef585f323fe0, 0x7c4a4e8428564ca2, 0x7c986c11dd82ce9d, 0x9dce2d319d813653}},
+    {"touched slice, sdirk2", {0x79ea9d3cd40c08a7, 0x45440f898e6c4063, 0x00d5226845088f35, 0xc04cfd31ad5474cc}},
+    {"touched tear, sdirk2", {0x79ea9d3cd40c08a7, 0xf4bd25c7cd78fd51, 0x93be91cf387591a7, 0xe8ef917f2c8c2284}},
+    {"touched bridge, sdirk2", {0x79ea9d3cd40c08a7, 0xdd0286f055bb2c0d, 0xfbdc129cd3533c92, 0xb5c34e13894b6bb8}},
+    {"touched plane, sdirk2", {0x718da65f08192477, 0xb16636627161efa7, 0x3bb92d815d192f91, 0x03f1a9cfcb89a4af}},
+    {"touched edge, sdirk2", {0x7f534bf22eafdbac, 0xaf956ac886c359b1, 0xcc6cb43f336071b3, 0x552ed0b50e5413ad}},
+    {"two hands, sdirk2", {0x34d2cff83561a91f, 0x18d0b43595d01ea0, 0xac921d954c3bb9d8, 0x79374f3f0466d856}},
+    {"fine mesh, sdirk2", {0x2a1d5e34c6a5e58a, 0x14f5ef1a8a3eae28, 0xe6653c36ca10c961, 0x2ae7e6d7aa194b1d}},
+    {"ctpm, auto", {0x723942efcdab73a9, 0x72e2b126c9483c8f, 0x01b72b4ebda476d9, 0xeaf02b4f38295c34}},
+    {"tpm, backward-euler", {0xedc2a23ffed183a2, 0xbda28cba822078c5, 0x268caa7c7f2d5865, 0x3bd59958129d00c5}},
+    {"angle-mass-spring, backward-euler",
+     {0x2ab987bbdd812e6f, 0xef69fc1da119ac16, 0x4c0538a89f1cb3f1, 0x74780638569a5baf}},
+    {"ctpm, sdirk2", {0x9a33fe579fb87174, 0x55199fa56a43b3d5, 0x09e348e1063b55ed, 0xe671313a60d9b212}},
+    {"full, auto", {0xd7f3150081fc0805, 0xafcd17cc8ec6534e, 0x27d4b4a23811249f, 0xc2f8300f69b262c8}},
+    {"wedge, auto", {0xd7f3150081fc0805, 0xafcd17cc8ec6534e, 0x9145fd1e54f436d7, 0xec5f033789bc331d}},
+    {"crumbs, auto", {0x729a47d3a073a817, 0x8782c9180e32e3f1, 0xd8e9c438d88bb438, 0xf11472ed7d6dcf16}},
+    {"resisting, auto", {0x723942efcdab73a9, 0x88548f92197ca9f5, 0x9c5b554cadeacf36, 0xb00e7eeccdbd16fa}},
+};
+
 inline constexpr GoldenRevision kGoldenRevisions[] = {
     {1, kGoldenRevision1, 0x002bb904fcccbc09},   {2, kGoldenRevision2, 0xbcef5c03c7baaf6a},
     {3, kGoldenRevision3, 0xe38c0b55dc5ae189},   {4, kGoldenRevision4, 0x4963e0ca8fb6cfff},
@@ -353,6 +381,7 @@ inline constexpr GoldenRevision kGoldenRevisions[] = {
     {17, kGoldenRevision17, 0x47d495b0831911b},  {18, kGoldenRevision18, 0x519dbe9952522cb},
     {19, kGoldenRevision19, 0xbcff56bc1d9b0f37}, {20, kGoldenRevision20, 0xc16065d9ee0c4396},
     {21, kGoldenRevision21, 0x369412ffb9ec0589}, {22, kGoldenRevision22, 0x3fb5c7dfb63a9f52},
+    {23, kGoldenRevision23, 0xeacc89825c5ea8f0},
 };
 
 /// Digest of a revision's rows (64-bit FNV-1a over names and hashes), chained to that of the revision before, or to 0.

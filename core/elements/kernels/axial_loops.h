@@ -154,14 +154,15 @@ void linearise_axial_of(const AxialArrays& m, const AxialBatch& batch) {
   for (int32_t i = 0; i < n; ++i) tension[i] *= factor[i], coupling[i] *= factor[i];
 
   // Tension stiffens across the element. Compression would soften; it is left out, which keeps the matrix positive
-  // definite.
+  // definite. The blocks are those of the rounded coupling: where it is far greater than the mass, they must balance
+  // it.
   alignas(64) double q[6][kBatch], pull[3][kBatch], kept[4][kBatch];
   const double hh = m.h * m.h;
   CTPM_INDEPENDENT
   for (int32_t i = 0; i < n; ++i) {
-    const double beside = hh * larger(tension[i], 0.0) * d.inverse[i];
+    const double beside = in_single(hh * larger(tension[i], 0.0) * d.inverse[i]);
     const double root = root_of(larger(coupling[i] - beside, 0.0));
-    const double x = d.x[i] * root, y = d.y[i] * root, z = d.z[i] * root;
+    const double x = in_single(d.x[i] * root), y = in_single(d.y[i] * root), z = in_single(d.z[i] * root);
     kept[0][i] = x, kept[1][i] = y, kept[2][i] = z, kept[3][i] = beside;
     q[0][i] = x * x + beside, q[1][i] = x * y, q[2][i] = x * z;
     q[3][i] = y * y + beside, q[4][i] = y * z, q[5][i] = z * z + beside;
@@ -183,25 +184,46 @@ void linearise_axial(const AxialArrays& m, const AxialBatch* first, const AxialB
   for (; first != last; ++first) linearise_axial_of(m, *first);
 }
 
-template <class Real>
-void apply_axial(const AxialArrays& m, const AxialBatch* first, const AxialBatch* last, const Real* v,
-                 SlabTarget<Real> result) {
-  alignas(64) Real qx[kBatch], qy[kBatch], qz[kBatch];
+void apply_axial(const AxialArrays& m, const AxialBatch* first, const AxialBatch* last, const double* v,
+                 SlabTarget<double> result) {
+  alignas(64) double qx[kBatch], qy[kBatch], qz[kBatch];
   const size_t spheres = m.spheres;
   for (; first != last; ++first) {
     const AxialBatch& batch = *first;
-    Coupling<Real> c;
+    Coupling<double> c;
     c.find(m.root_x, m.root_y, m.root_z, m.across, batch.place, batch.count);
-    const Real *xa = v + batch.a, *ya = xa + spheres, *za = ya + spheres;
-    const Real *xb = v + batch.b, *yb = xb + spheres, *zb = yb + spheres;
+    const double *xa = v + batch.a, *ya = xa + spheres, *za = ya + spheres;
+    const double *xb = v + batch.b, *yb = xb + spheres, *zb = yb + spheres;
     CTPM_INDEPENDENT
     for (int32_t i = 0; i < batch.count; ++i) {
-      const Real dx = xb[i] - xa[i], dy = yb[i] - ya[i], dz = zb[i] - za[i];
-      const Real t = c.x[i] * dx + c.y[i] * dy + c.z[i] * dz;
+      const double dx = xb[i] - xa[i], dy = yb[i] - ya[i], dz = zb[i] - za[i];
+      const double t = c.x[i] * dx + c.y[i] * dy + c.z[i] * dz;
       qx[i] = c.x[i] * t + c.all[i] * dx, qy[i] = c.y[i] * t + c.all[i] * dy, qz[i] = c.z[i] * t + c.all[i] * dz;
     }
     if (batch.adds_a) subtract_from(result, batch.a, batch.count, qx, qy, qz);
     if (batch.adds_b) add_to(result, batch.b, batch.count, qx, qy, qz);
+  }
+}
+
+template <class Real>
+void apply_axial_across(const AxialArrays& m, const AxialBatch* first, const AxialBatch* last, const Real* v,
+                        SlabTarget<Real> result) {
+  alignas(64) Real qx[kBatch], qy[kBatch], qz[kBatch];
+  for (; first != last; ++first) {
+    const AxialBatch& batch = *first;
+    Coupling<Real> c;
+    c.find(m.root_x, m.root_y, m.root_z, m.across, batch.place, batch.count);
+    const auto find = [&](int32_t from) {
+      const Real *x = v + from, *y = x + m.spheres, *z = y + m.spheres;
+      CTPM_INDEPENDENT
+      for (int32_t i = 0; i < batch.count; ++i) {
+        const Real t = c.x[i] * x[i] + c.y[i] * y[i] + c.z[i] * z[i];
+        qx[i] = c.x[i] * t + c.all[i] * x[i], qy[i] = c.y[i] * t + c.all[i] * y[i],
+        qz[i] = c.z[i] * t + c.all[i] * z[i];
+      }
+    };
+    if (batch.adds_a) find(batch.b), subtract_from(result, batch.a, batch.count, qx, qy, qz);
+    if (batch.adds_b) find(batch.a), subtract_from(result, batch.b, batch.count, qx, qy, qz);
   }
 }
 

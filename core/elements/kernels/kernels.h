@@ -82,6 +82,10 @@ struct LineBatch {
   bool adds_a, adds_c, adds_e;  ///< whether spheres a, c, e are the slab's own
 };
 
+/// How much the coupling of a batch of lines counts beside the masses: too little to be applied, too little for the
+/// diagonal blocks, or enough for both.
+enum class LineWeight : std::uint8_t { negligible, light, full };
+
 struct LineArrays {
   std::size_t spheres;
   const double *x, *y, *z;           ///< (sphere_count)
@@ -120,45 +124,83 @@ struct Points {
   const double *x, *y, *z;
 };
 
-/// Arrays that the loops of the solver read and write. Vectors are (3 x sphere_count), `inverse` is (6 x sphere_count).
+/// Lanes of the sweeps: the most spheres of a chunk.
+inline constexpr std::int32_t kLanes = 16;
+
+/// Coupling between the spheres of a chunk, one a lane, and as many consecutive ones of its slab. Lanes outside
+/// [begin, end) have none.
+struct SweepPiece {
+  std::int32_t place;       ///< of lane 0
+  std::int32_t across;      ///< sphere across from lane 0
+  std::int32_t begin, end;  ///< lanes
+};
+
+/// Consecutive spheres of a slab that a sweep treats at once, with what couples them with later chunks, with earlier
+/// ones, and with spheres beside them, whose coupling is lagged.
+struct SweepChunk {
+  std::int32_t first, count;  ///< count in [1, kLanes]
+  const SweepPiece *later, *earlier, *beside, *end;
+};
+
+/// The chunks of a slab, whose spheres are [begin, end).
+struct Sweep {
+  const SweepChunk *first, *last;
+  std::int32_t begin, end;
+};
+
+/// Linearised coupling of the axial elements, as in AxialArrays. Numbers from kLanes before the first place to kLanes
+/// after the last one may be read.
+struct SweepCoupling {
+  const float *root_x, *root_y, *root_z, *across;
+};
+
+/// Arrays that the loops of the solver read and write; see solver::ConjugateGradient. Vectors are (3 x sphere_count),
+/// and kLanes more numbers may be read. `factor` has L and the inverse of d of the blocks D = L diag(d) L^T, where
+/// those have their entries: 1 / dx, lxy, lxz, 1 / dy, lyz, 1 / dz (6 x sphere_count).
 template <class Real>
 struct SolverArrays {
   std::size_t spheres;
-  const Real* mass;  ///< (sphere_count)
-  Real* inverse;
-  Real *solution, *residual, *preconditioned, *direction, *product;
+  const Real* factor;
+  Real *solution, *residual, *direction, *upward, *downward, *change, *lagged;
 };
 
 /// Loops of an iterative solver with vectors of Real, float or double. Ranges are of spheres.
 template <class Real>
 struct SolverKernels {
-  void (*apply_axial)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last, const Real* v,
-                      SlabTarget<Real> result);
+  /// As Kernels::apply_axial(), without what acts on a sphere by its own velocity.
+  void (*apply_axial_across)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last, const Real* v,
+                             SlabTarget<Real> result);
   void (*apply_line)(const LineArrays&, const LineBatch&, const Real* v, SlabTarget<Real> result);
-  /// Inverts the symmetric 3x3 blocks of spheres [begin, end).
-  void (*invert_blocks)(std::size_t spheres, const double* blocks, Real* inverse, std::size_t begin, std::size_t end);
-  /// residual = scale * `first`, solution = 0, direction = 0; returns residual . preconditioned.
-  double (*begin_solve)(const SolverArrays<Real>&, const double* first, double scale, std::size_t begin,
-                        std::size_t end);
-  /// direction = preconditioned + turn * direction, product = mass * direction.
-  void (*turn)(const SolverArrays<Real>&, Real turn, std::size_t begin, std::size_t end);
-  double (*curvature)(const SolverArrays<Real>&, std::size_t begin, std::size_t end);  ///< direction . product
-  /// Moves the solution by `step` along the direction; returns residual . preconditioned.
-  double (*descend)(const SolverArrays<Real>&, Real step, std::size_t begin, std::size_t end);
+  /// Takes from `result` what acts on a sphere by its own velocity, which linearise_line() added to the blocks.
+  void (*take_line_blocks)(const LineArrays&, const LineBatch&, const Real* v, SlabTarget<Real> result);
+  /// Factors the symmetric 3x3 blocks of spheres [begin, end).
+  void (*factor_blocks)(std::size_t spheres, const double* blocks, Real* factor, std::size_t begin, std::size_t end);
+  /// solution = 0, direction = 0, residual = D (D + L)^-1 (scale * `first`); returns residual . D^-1 residual.
+  double (*begin_solve)(const SolverArrays<Real>&, const SweepCoupling&, const Sweep&, const double* first,
+                        double scale);
+  /// direction = residual + turn * direction, upward = (D + U)^-1 direction, change = D upward.
+  void (*sweep_up)(const SolverArrays<Real>&, const SweepCoupling&, const Sweep&, Real turn);
+  /// downward = (D + L)^-1 (direction - change + N upward), change += D downward, where `lagged` has the part of N
+  /// upward that is not of pieces. Returns direction . (upward + downward).
+  double (*sweep_down)(const SolverArrays<Real>&, const SweepCoupling&, const Sweep&);
+  /// solution += step * upward, residual -= step * change; returns residual . D^-1 residual.
+  double (*descend)(const SolverArrays<Real>&, const Sweep&, Real step);
 };
 
 /// The inner loops, compiled once for each instruction set. Ranges are of batches or of spheres.
 struct Kernels {
   void (*add_axial_forces)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last);
   void (*linearise_axial)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last);
+  /// result += coupling times v.
+  void (*apply_axial)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last, const double* v,
+                      SlabTarget<double> result);
   /// Writes Kelvin elongations [m] (internal_count).
   void (*find_kelvin)(const AxialArrays&, const AxialBatch* first, const AxialBatch* last, double* elongation);
 
   /// Computes lambda of lines whose middle spheres are in the slab, and the softness of those spheres (Eq. 8).
   void (*measure_line)(const LineArrays&, const LineBatch&);
   void (*add_line_forces)(const LineArrays&, const LineBatch&);
-  /// False: the coupling is too small to matter.
-  bool (*linearise_line)(const LineArrays&, const LineBatch&);
+  LineWeight (*linearise_line)(const LineArrays&, const LineBatch&);
 
   SolverKernels<float> single;
   SolverKernels<double> full;

@@ -236,7 +236,7 @@ void find_coupling(const LineArrays& m, const LineBatch& batch, const Softness& 
   }
 }
 
-bool linearise_line(const LineArrays& m, const LineBatch& batch) {
+LineWeight linearise_line(const LineArrays& m, const LineBatch& batch) {
   const int32_t n = batch.places;
   alignas(64) double q[6][kBatch], kept[4][kBatch];
   Softness softness;
@@ -247,8 +247,10 @@ bool linearise_line(const LineArrays& m, const LineBatch& batch) {
   else
     find_coupling<false>(m, batch, softness, kept);
   float* const coupling_of[4] = {m.along_x, m.along_y, m.along_z, m.isotropic};
-  if (batch.adds_c)
-    for (int32_t k = 0; k < 4; ++k) convert(kept[k], coupling_of[k] + batch.place, n);
+  for (int32_t k = 0; k < 4; ++k) {
+    for (int32_t i = 0; i < n; ++i) kept[k][i] = in_single(kept[k][i]);
+    if (batch.adds_c) convert(kept[k], coupling_of[k] + batch.place, n);
+  }
 
   const double *x = kept[0], *y = kept[1], *z = kept[2], *isotropic = kept[3];
   const int32_t* c = m.c + batch.place;
@@ -258,13 +260,13 @@ bool linearise_line(const LineArrays& m, const LineBatch& batch) {
     matters |= coupling >= kNegligibleCoupling * mass ? 1 : 0;
     leads |= coupling >= kLeadingCoupling * mass ? 1 : 0;
   }
-  if (leads == 0) return matters != 0;
+  if (leads == 0) return matters != 0 ? LineWeight::light : LineWeight::negligible;
   for (int32_t i = 0; i < n; ++i) {
     q[0][i] = x[i] * x[i] + isotropic[i], q[1][i] = x[i] * y[i], q[2][i] = x[i] * z[i];
     q[3][i] = y[i] * y[i] + isotropic[i], q[4][i] = y[i] * z[i], q[5][i] = z[i] * z[i] + isotropic[i];
   }
   scatter_line_blocks(m, batch, q);
-  return true;
+  return LineWeight::full;
 }
 
 template <class Real>
@@ -276,6 +278,25 @@ void apply_line(const LineArrays& m, const LineBatch& batch, const Real* v, Slab
     const Real t = x[i] * r.x + y[i] * r.y + z[i] * r.z, all = isotropic[i];
     return Three<Real>{x[i] * t + all * r.x, y[i] * t + all * r.y, z[i] * t + all * r.z};
   });
+}
+
+template <class Real>
+void take_line_blocks(const LineArrays& m, const LineBatch& batch, const Real* v, SlabTarget<Real> result) {
+  Coupling<Real> c;
+  c.find(m.along_x, m.along_y, m.along_z, m.isotropic, batch.place, batch.places);
+  const size_t n = m.spheres;
+  const auto take = [&](const int32_t* spheres, Real share) {
+    for (int32_t i = 0; i < batch.count; ++i) {
+      const Real *of = v + spheres[batch.place + i], x = share * of[0], y = share * of[n], z = share * of[2 * n];
+      const Real t = c.x[i] * x + c.y[i] * y + c.z[i] * z;
+      Real* to = result.data + (spheres[batch.place + i] - result.begin);
+      to[0] -= c.x[i] * t + c.all[i] * x, to[result.stride] -= c.y[i] * t + c.all[i] * y;
+      to[2 * result.stride] -= c.z[i] * t + c.all[i] * z;
+    }
+  };
+  if (batch.adds_c) take(m.c, Real(1));
+  if (batch.adds_a) take(m.a, Real(0.25));
+  if (batch.adds_e) take(m.e, Real(0.25));
 }
 
 }  // namespace

@@ -12,10 +12,15 @@
 #define CTPM_INDEPENDENT _Pragma("GCC ivdep")
 #endif
 
+// Functions of whole vectors, which a call would send through memory.
+#undef CTPM_INLINE
+#define CTPM_INLINE __attribute__((always_inline)) inline
+
 namespace ctpm::elements::CTPM_KERNELS {
 namespace {
 
 using std::int32_t;
+using std::int64_t;
 using std::size_t;
 
 /// Below this length [m] an element has no direction and gives no force.
@@ -24,6 +29,13 @@ constexpr double kShortest = 1e-12;
 double smaller(double a, double b) { return b < a ? b : a; }
 double larger(double a, double b) { return b > a ? b : a; }
 double root_of(double a) { return __builtin_sqrt(a); }
+
+/// Rounds to the precision of float (Veltkamp's split, in Dekker, "A floating-point technique for extending the
+/// available precision", 1971), without leaving a loop over numbers of double.
+double in_single(double a) {
+  const double spread = a * 536870913.0;  // 2^29 + 1
+  return spread - (spread - a);
+}
 
 /// Converts the numbers of a batch to another precision. This loop stands alone, because a loop that mixes precisions
 /// is vectorised only for the wider count of the narrower one.
@@ -91,16 +103,18 @@ void add_to_blocks(const SlabTarget<double>& blocks, int32_t sphere, int32_t cou
 #include "core/elements/kernels/cell_loops.h"
 #include "core/elements/kernels/line_loops.h"
 #include "core/elements/kernels/solver_loops.h"
+#include "core/elements/kernels/sweep_loops.h"
 
 namespace ctpm::elements::CTPM_KERNELS {
 
 template <class Real>
-constexpr SolverKernels<Real> solver{apply_axial<Real>, apply_line<Real>, invert_blocks<Real>, begin_solve<Real>,
-                                     turn<Real>,        curvature<Real>,  descend<Real>};
+constexpr SolverKernels<Real> solver{apply_axial_across<Real>, apply_line<Real>,  take_line_blocks<Real>,
+                                     factor_blocks<Real>,      begin_solve<Real>, sweep_up<Real>,
+                                     sweep_down<Real>,         descend<Real>};
 
 extern const Kernels kernels;
-const Kernels kernels{add_axial_forces, linearise_axial, find_kelvin,    measure_line,  add_line_forces,
-                      linearise_line,   solver<float>,   solver<double>, multiply_mass, residual_from,
-                      nearest_squared,  fastest_squared, least_of_edges, least_of_cells};
+const Kernels kernels{add_axial_forces, linearise_axial, apply_axial,     find_kelvin,    measure_line,
+                      add_line_forces,  linearise_line,  solver<float>,   solver<double>, multiply_mass,
+                      residual_from,    nearest_squared, fastest_squared, least_of_edges, least_of_cells};
 
 }  // namespace ctpm::elements::CTPM_KERNELS

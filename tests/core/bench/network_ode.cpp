@@ -42,7 +42,7 @@ NetworkOde::NetworkOde(const Model& model, const State& start, const Press& pres
       state_(start),
       force_(3 * spheres_),
       blocks_(6 * spheres_),
-      inverse_(6 * spheres_) {}
+      factor_(6 * spheres_) {}
 
 std::vector<double> NetworkOde::start_values() const {
   std::vector<double> y(3 * spheres_);
@@ -139,17 +139,18 @@ void NetworkOde::take_blocks(double time, double gamma, const double* y) {
     for (std::size_t k = 0; k < 6; ++k) blocks_[k * spheres_ + contact.sphere] += own[k];
   });
   elements::kernels_for(elements::best_instruction_set())
-      .full.invert_blocks(spheres_, blocks_.data(), inverse_.data(), 0, spheres_);
+      .full.factor_blocks(spheres_, blocks_.data(), factor_.data(), 0, spheres_);
 }
 
 void NetworkOde::precondition(double gamma, const double* r, double* z) const {
   const std::size_t n = spheres_;
-  const double* b = inverse_.data();
+  const double* b = factor_.data();
   for (std::size_t i = 0; i < n; ++i) {
     const double m = model_.mass[i], x = m * r[3 * n + i], y = m * r[4 * n + i], w = m * r[5 * n + i];
-    z[3 * n + i] = b[i] * x + b[n + i] * y + b[2 * n + i] * w;
-    z[4 * n + i] = b[n + i] * x + b[3 * n + i] * y + b[4 * n + i] * w;
-    z[5 * n + i] = b[2 * n + i] * x + b[4 * n + i] * y + b[5 * n + i] * w;
+    const double lxy = b[n + i], lxz = b[2 * n + i], lyz = b[4 * n + i], u = y - lxy * x;
+    z[5 * n + i] = b[5 * n + i] * (w - lxz * x - lyz * u);
+    z[4 * n + i] = b[3 * n + i] * u - lyz * z[5 * n + i];
+    z[3 * n + i] = b[i] * x - lxy * z[4 * n + i] - lxz * z[5 * n + i];
     for (std::size_t k = 0; k < 3; ++k) {
       if ((model_.held_axes[i] >> k & 1) != 0) z[(3 + k) * n + i] = r[(3 + k) * n + i];
       z[k * n + i] = r[k * n + i] + gamma * z[(3 + k) * n + i];

@@ -57,7 +57,7 @@ class NetworkOde {
   elements::Elements elements_;
   State state_;
   elements::Coordinates force_;
-  elements::DiagonalBlocks blocks_, inverse_;
+  elements::DiagonalBlocks blocks_, factor_;
 };
 
 }  // namespace ctpm::testing

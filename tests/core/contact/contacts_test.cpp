@@ -89,16 +89,15 @@ TEST_F(CutAndPressed, TheCouplingIsSymmetricAndHasTheDiagonalThatWasAdded) {
   elements::Coordinates u(n), v(n), of_u(n), of_v(n);
   for (double& x : u) x = noise.next();
   for (double& x : v) x = noise.next();
-  const double energy = linearised.apply(u.data(), of_u.data());
-  (void)linearised.apply(v.data(), of_v.data());
+  linearised.apply(u.data(), of_u.data()), linearised.apply(v.data(), of_v.data());
+  const double energy = std::inner_product(u.begin(), u.end(), of_u.begin(), 0.0);
   const double uv = std::inner_product(v.begin(), v.end(), of_u.begin(), 0.0);
   EXPECT_NEAR(uv, std::inner_product(u.begin(), u.end(), of_v.begin(), 0.0), 1e-12 * std::abs(energy));
-  EXPECT_NEAR(energy, std::inner_product(u.begin(), u.end(), of_u.begin(), 0.0), 1e-12 * energy);
   // The diagonal of the matrix is xx, yy and zz of the blocks.
   for (std::size_t i = 0; i < n; ++i) {
     elements::Coordinates one(n), column(n);
     one[i] = 1;
-    (void)linearised.apply(one.data(), column.data());
+    linearised.apply(one.data(), column.data());
     const std::size_t axis = i / model_.sphere_count(), sphere = i % model_.sphere_count(), rows[3] = {0, 3, 5};
     EXPECT_NEAR(column[i], blocks_[rows[axis] * model_.sphere_count() + sphere], 1e-12 * std::abs(column[i])) << i;
   }

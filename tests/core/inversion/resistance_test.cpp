@@ -197,8 +197,7 @@ TEST(LinearisedResistance, IsTheSecondDerivativeWhereLittleIsMissing) {
   constexpr double kStep = 1e-3, kMove = 1e-9;
   Rig rig(model);
   const auto linearised = rig.resistance.linearise(state, kStep, rig.force, rig.blocks);
-  const double energy = linearised.apply(static_cast<const double*>(v.data()), product.data());
-  EXPECT_NEAR(energy, std::inner_product(v.begin(), v.end(), product.begin(), 0.0), 1e-9 * energy);
+  linearised.apply(v.data(), product.data());
   State ahead = state, behind = state;
   for (std::size_t i = 0; i < n; ++i)
     ahead.position.add(i, kMove * moving.velocity[i]), behind.position.add(i, -kMove * moving.velocity[i]);
@@ -225,7 +224,8 @@ TEST(LinearisedResistance, HasTheBlocksOfItsMatrixAndTakesThemBackToTheBit) {
     for (std::size_t column = 0; column < 3 * n; ++column) {
       elements::Coordinates unit(3 * n), product(3 * n);
       unit[column] = 1;
-      EXPECT_GE(linearised.apply(static_cast<const double*>(unit.data()), product.data()), 0);
+      linearised.apply(unit.data(), product.data());
+      EXPECT_GE(product[column], 0);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t entry = kEntry[column / n][axis] * n + column % n;
         EXPECT_NEAR(product[axis * n + column % n], rig.blocks[entry] - before[entry], 1e-12);
@@ -242,7 +242,9 @@ TEST(LinearisedResistance, IsNothingInAModelWithoutCells) {
   EXPECT_FALSE(rig.resistance.any());
   const auto linearised = rig.resistance.linearise(state, 1e-3, rig.force, rig.blocks);
   for (const double force : rig.force) ASSERT_EQ(force, 0);
-  EXPECT_EQ(linearised.apply(static_cast<const double*>(rig.force.data()), rig.force.data()), 0);
+  const elements::Coordinates unit(rig.force.size(), 1.0);
+  linearised.apply(unit.data(), rig.force.data());
+  for (const double product : rig.force) ASSERT_EQ(product, 0);
   EXPECT_EQ(rig.resistance.count_inverted(state), 0);
 }
 

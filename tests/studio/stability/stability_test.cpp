@@ -56,11 +56,11 @@ TEST(Stability, WhatDoesNotComeToRestIsMissed) {
 }
 
 TEST(Stability, WhatRanAndThenFailedIsMissedEvenIfItWasAnnounced) {
-  const stability::StabilityRun run = stability::run_stability_case(case_named("viscosity-1000"), Integrator::sdirk2);
+  const stability::StabilityRun run = stability::run_stability_case(case_named("stiffness-1"), Integrator::sdirk2);
   EXPECT_EQ(run.verdict, reports::ReportVerdict::missed);
   EXPECT_GT(run.ticks, 1);
   EXPECT_NE(run.reason.find("no numerical damping"), std::string::npos) << run.reason;
-  EXPECT_NE(run.reason.find("energy grew"), std::string::npos) << run.reason;
+  EXPECT_NE(run.reason.find("does not come to rest"), std::string::npos) << run.reason;
 }
 
 TEST(Stability, BodiesThatAreAbusedSpinAndMeetAreAmongTheCases) {
