@@ -34,6 +34,9 @@ class Elements {
   void linearise(const StateView& state, double h, bool with_dashpots, Coordinates& force, DiagonalBlocks& blocks,
                  Before&& before);
 
+  /// Finds and allocates what the first linearise() for a step of `h` [s] would.
+  void prepare_linearise(double h);
+
   /// result += (h^2 K + h C) v as of the last linearise() (3 x sphere_count each).
   void apply(const double* v, double* result) const;
 
@@ -79,7 +82,6 @@ class Elements {
   Arrays arrays(const StateView& state);
   void measure(const Arrays& arrays);
   void add_forces_of(int slab, Arrays arrays, Coordinates& force);
-  void prepare_linearise(double h);
   void linearise_of(int slab, Arrays arrays, double h, bool with_dashpots, Coordinates& force, DiagonalBlocks& blocks);
 
   void make_room(std::size_t full_rows, std::size_t single_rows);

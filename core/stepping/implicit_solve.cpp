@@ -26,6 +26,7 @@ ImplicitSolve::ImplicitSolve(const StepContext& context)
       velocity_(3 * context.model.sphere_count()),
       blocks_(6 * context.model.sphere_count()) {
   const Model& model = context.model;
+  context.elements.prepare_linearise(model.tick / model.solver.substeps);
   limits_.relative = model.solver.tolerance;
   limits_.absolute = model.solver.velocity_floor * std::sqrt(total_mass(model));
   limits_.max_iterations = model.solver.max_iterations;
