@@ -15,8 +15,6 @@
 // Functions of whole vectors, which a call would send through memory.
 #undef CTPM_INLINE
 #define CTPM_INLINE __attribute__((always_inline)) inline
-#undef CTPM_INLINE_LAMBDA
-#define CTPM_INLINE_LAMBDA __attribute__((always_inline))
 
 namespace ctpm::elements::CTPM_KERNELS {
 namespace {

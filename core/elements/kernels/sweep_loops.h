@@ -183,6 +183,8 @@ struct WideSum {
   }
 };
 
+// The vectors of a chunk do not depend on each other: pieces couple its spheres with other chunks, or are lagged.
+
 /// sum += what the spheres across hand over through their pieces to the lanes from `lane` on: coupling times `v`.
 template <class Real>
 CTPM_INLINE void pull(const SweepCoupling& coupling, const SweepPiece* first, const SweepPiece* last, const Real* v,
@@ -195,18 +197,12 @@ CTPM_INLINE void pull(const SweepCoupling& coupling, const SweepPiece* first, co
   }
 }
 
-/// Calls act(chunk, lane) for each vector of a chunk: those of one chunk do not depend on each other.
-template <class Real, class Act>
-CTPM_INLINE void for_parts(const SweepChunk& chunk, Act&& act) {
-  for (int32_t lane = 0; lane < chunk.count; lane += Part<Real>::kCount) act(lane, chunk.first + lane);
-}
-
 template <class Real>
 void sweep_up(const SolverArrays<Real>& m, const SweepCoupling& coupling, const Sweep& sweep, Real turn) {
   const size_t n = m.spheres;
   for (const SweepChunk* chunk = sweep.last; chunk-- != sweep.first;)
-    for_parts<Real>(*chunk, [&](int32_t lane, int32_t at) CTPM_INLINE_LAMBDA {
-      const int32_t count = chunk->count - lane;
+    for (int32_t lane = 0; lane < chunk->count; lane += Part<Real>::kCount) {
+      const int32_t at = chunk->first + lane, count = chunk->count - lane;
       Wide<Real> sum, residual, upward;
       sum.load(m.direction, n, sweep, at), residual.load(m.residual, n, sweep, at);
       sum.x = residual.x + turn * sum.x, sum.y = residual.y + turn * sum.y, sum.z = residual.z + turn * sum.z;
@@ -214,7 +210,7 @@ void sweep_up(const SolverArrays<Real>& m, const SweepCoupling& coupling, const 
       pull(coupling, chunk->later, chunk->earlier, m.upward, n, sweep, lane, sum);
       solve_blocks(m, at, sum, upward);
       sum.store(m.change, n, sweep, at, count), upward.store(m.upward, n, sweep, at, count);
-    });
+    }
 }
 
 template <class Real>
@@ -222,8 +218,8 @@ double sweep_down(const SolverArrays<Real>& m, const SweepCoupling& coupling, co
   const size_t n = m.spheres;
   WideSum<Real> curvature;
   for (const SweepChunk* chunk = sweep.first; chunk != sweep.last; ++chunk)
-    for_parts<Real>(*chunk, [&](int32_t lane, int32_t at) CTPM_INLINE_LAMBDA {
-      const int32_t count = chunk->count - lane;
+    for (int32_t lane = 0; lane < chunk->count; lane += Part<Real>::kCount) {
+      const int32_t at = chunk->first + lane, count = chunk->count - lane;
       Wide<Real> direction, change, lagged, upward, downward;
       direction.load(m.direction, n, sweep, at), change.load(m.change, n, sweep, at);
       lagged.load(m.lagged, n, sweep, at);
@@ -239,7 +235,7 @@ double sweep_down(const SolverArrays<Real>& m, const SweepCoupling& coupling, co
       upward.load(m.upward, n, sweep, at);
       downward.add(upward), downward.keep(count);
       curvature.add_products(direction, downward, lane);
-    });
+    }
   return curvature.total();
 }
 
@@ -262,8 +258,8 @@ double begin_solve(const SolverArrays<Real>& m, const SweepCoupling& coupling, c
       __builtin_memset(vector + axis * n + begin, 0, (end - begin) * sizeof(Real));
   WideSum<Real> energy;
   for (const SweepChunk* chunk = sweep.first; chunk != sweep.last; ++chunk)
-    for_parts<Real>(*chunk, [&](int32_t lane, int32_t at) CTPM_INLINE_LAMBDA {
-      const int32_t count = chunk->count - lane;
+    for (int32_t lane = 0; lane < chunk->count; lane += Part<Real>::kCount) {
+      const int32_t at = chunk->first + lane, count = chunk->count - lane;
       Wide<Real> sum, downward;
       sum.load(m.residual, n, sweep, at);
       pull(coupling, chunk->earlier, chunk->beside, m.downward, n, sweep, lane, sum);
@@ -271,7 +267,7 @@ double begin_solve(const SolverArrays<Real>& m, const SweepCoupling& coupling, c
       sum.store(m.residual, n, sweep, at, count), downward.store(m.downward, n, sweep, at, count);
       sum.keep(count);
       energy.add_products(sum, downward, lane);
-    });
+    }
   return energy.total();
 }
 
