@@ -61,7 +61,9 @@ BodyOverlaps::BodyOverlaps(const Model& model, std::vector<Body>& bodies) : mode
     is_touched_.resize(std::size_t(body.first_vertex) + body.surface.vertex_count());
   }
   lines_.resize(most_patches), hits_.resize(most_vertices), hit_vertices_.reserve(most_vertices);
-  way_.resize(bodies.size()), reach_.reserve(most_patches), triangles_.reserve(NearSurface::kTrianglesPerPatch);
+  way_.resize(bodies.size()), was_touched_.resize(bodies.size());
+  touched_.reserve(is_touched_.size()), reach_.reserve(most_patches),
+      triangles_.reserve(NearSurface::kTrianglesPerPatch);
 }
 
 bool BodyOverlaps::may_meet(std::size_t body, std::size_t other) const {
@@ -76,13 +78,37 @@ void BodyOverlaps::begin() {
 void BodyOverlaps::begin(const StateView& state, double h) {
   begin();
   reaches_far_ = false;
-  for (std::size_t b = 0; b < bodies_.size(); ++b)
-    way_[b] = h * fastest(model_.organs[std::size_t(bodies_[b].organ)], state.velocity);
-  std::fill(is_touched_.begin(), is_touched_.end(), std::uint8_t(0));
+  velocity_ = &state.velocity, h_ = h;
+  std::fill(way_.begin(), way_.end(), std::nullopt);
+  std::fill(was_touched_.begin(), was_touched_.end(), std::uint8_t(0));
+  for (const std::int32_t facet : touched_) is_touched_[std::size_t(facet)] = 0;
+  touched_.clear();
   const auto points = std::int32_t(model_.touchable_count());
-  for (const std::int32_t point : state.touched)
-    if (point >= points && point < points + std::int32_t(is_touched_.size()))
-      is_touched_[std::size_t(point - points)] = 1;
+  for (const std::int32_t point : state.touched) {
+    if (point < points || point >= points + std::int32_t(is_touched_.size())) continue;
+    touched_.push_back(point - points);
+    is_touched_[std::size_t(point - points)] = 1;
+    was_touched_[body_of(point - points)] = 1;
+  }
+}
+
+/// The body to whose surface a facet belongs.
+std::size_t BodyOverlaps::body_of(std::int32_t facet) const {
+  const auto next = std::upper_bound(bodies_.begin(), bodies_.end(), facet,
+                                     [](std::int32_t f, const Body& body) { return f < body.first_vertex; });
+  return std::size_t(next - bodies_.begin()) - 1;
+}
+
+/// How far a body may have come in the step [m].
+double BodyOverlaps::way_of(std::size_t body) {
+  if (!way_[body]) way_[body] = h_ * fastest(model_.organs[std::size_t(bodies_[body].organ)], *velocity_);
+  return *way_[body];
+}
+
+/// Down to where overlaps of two bodies may be looked for [m].
+double BodyOverlaps::farthest_reach(std::size_t body, std::size_t other) const {
+  return kReach * std::min(model_.organs[std::size_t(bodies_[body].organ)].spacing,
+                           model_.organs[std::size_t(bodies_[other].organ)].spacing);
 }
 
 void BodyOverlaps::find(std::size_t body, std::vector<Overlap>& overlaps) {
@@ -109,20 +135,21 @@ void BodyOverlaps::find(std::size_t body, std::vector<Overlap>& overlaps) {
 /// Sets how deep overlaps of each patch of `body` with `other` are looked for [m].
 void BodyOverlaps::set_reach(std::size_t body, std::size_t other) {
   const Body& own = bodies_[body];
-  const double spacing =
-      std::min(model_.organs[std::size_t(own.organ)].spacing, model_.organs[std::size_t(bodies_[other].organ)].spacing);
-  const double far = kReach * spacing, near = std::min(far, kNewReach * spacing + kAhead * (way_[body] + way_[other]));
+  const double far = farthest_reach(body, other);
+  const double near =
+      reaches_far_ ? far : std::min(far, kNewReach / kReach * far + kAhead * (way_of(body) + way_of(other)));
   const auto was_touched = [&](std::int32_t facet) { return is_touched_[std::size_t(own.first_vertex + facet)] != 0; };
   const PatchFacets& facets = facets_[body];
   reach_.clear();
   for (std::size_t p = 0; p < own.surface.patches().size(); ++p) {
     const auto first = facets.facet.begin() + facets.first[p], last = facets.facet.begin() + facets.first[p + 1];
-    reach_.push_back(reaches_far_ || std::any_of(first, last, was_touched) ? far : near);
+    reach_.push_back(was_touched_[body] != 0 && std::any_of(first, last, was_touched) ? far : near);
   }
 }
 
 /// Looks where the vertices of a body are inside another one, or inside itself.
 void BodyOverlaps::look(std::size_t body, std::size_t other) {
+  if (!patches_[body].all().grown(farthest_reach(body, other)).meets(patches_[other].all())) return;
   set_reach(body, other);
   ++look_;
   const double apart = kPatchesApart * model_.organs[std::size_t(bodies_[body].organ)].spacing;

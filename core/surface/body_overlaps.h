@@ -81,6 +81,9 @@ class BodyOverlaps {
     return hidden_ != nullptr && !hidden_->empty() && (*hidden_)[std::size_t(body.first_vertex + vertex)] != 0;
   }
   bool may_meet(std::size_t body, std::size_t other) const;
+  std::size_t body_of(std::int32_t facet) const;
+  double way_of(std::size_t body);
+  double farthest_reach(std::size_t body, std::size_t other) const;
   void set_reach(std::size_t body, std::size_t other);
   void look(std::size_t body, std::size_t other);
   void look_at_patches(std::size_t body, std::int32_t patch, std::size_t other, std::int32_t other_patch);
@@ -102,8 +105,12 @@ class BodyOverlaps {
   std::uint32_t round_ = 0, placing_ = 0, look_ = 0;  ///< of one body, of all, of one body and another
   const std::vector<std::uint8_t>* hidden_ = nullptr;
   bool reaches_far_ = true;                   ///< everywhere
-  std::vector<double> way_;                   ///< that each body may have come in the step [m]
-  std::vector<std::uint8_t> is_touched_;      ///< facets, by their first vertices through all organs
+  double h_ = 0;                              ///< length of the step [s]
+  const Vec3Array* velocity_ = nullptr;       ///< at its start [m/s]
+  std::vector<std::optional<double>> way_;    ///< that each body may have come in it, once asked for [m]
+  std::vector<std::int32_t> touched_;         ///< facets that were touched at its start
+  std::vector<std::uint8_t> is_touched_;      ///< the same, of all facets, by their first vertices through all organs
+  std::vector<std::uint8_t> was_touched_;     ///< whether any facet of a body was
   std::vector<double> reach_;                 ///< of the patches of one body [m]
   std::vector<Box> triangles_;                ///< of one patch that another may be near, at rest [m]
   Box all_triangles_{Vec3{}}, back_{Vec3{}};  ///< around them; by how far they are back from where they are [m]

@@ -28,6 +28,8 @@ class NearPatches {
     return std::span(vertices_).subspan(begin, std::size_t(first_vertex_[std::size_t(patch) + 1]) - begin);
   }
 
+  /// Box that contains all patches [m].
+  Box all() const { return surface_.rest_box().moved(surface_.displacements()); }
   /// Box that contains a patch [m].
   const Box& box(Index patch) { return patches_.find(*this, surface_.patches(), patch).box; }
   /// Displacements from rest within which those of a patch's vertices lie [m].
@@ -56,7 +58,6 @@ class NearPatches {
     const Place& find(const NearPatches& of, const std::vector<NearSurface::Bound>& bounds, Index index);
   };
 
-  Box all() const { return surface_.rest_box().moved(surface_.displacements()); }
   const Box& group(std::size_t index) { return groups_.find(*this, surface_.groups(), Index(index)).box; }
 
   const NearSurface& surface_;

@@ -1,6 +1,7 @@
 #include "core/surface/near_surface.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -18,6 +19,11 @@ Box widened(const Box& range, double widen, double turned) {
   const double more = kRounding + turned;
   const Vec3 margin = widen * (range.high - range.low) + Vec3{more, more, more};
   return Box(range.low - margin, range.high + margin);
+}
+
+bool are_same_bits(Vec3 a, Vec3 b) {
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  return bits(a.x) == bits(b.x) && bits(a.y) == bits(b.y) && bits(a.z) == bits(b.z);
 }
 
 /// Spreads the low 10 bits of a number to every third bit.
@@ -190,9 +196,13 @@ void NearSurface::find_places_in_spheres() {
 }
 
 void NearSurface::begin(const Vec3Array& position) {
+  const std::size_t count = vertex_count() == 0 ? 0 : spheres_.size();
+  std::size_t i = 0;
+  // What was found while no sphere moved a bit is still so.
+  while (i < count && are_same_bits(position_[i], position[std::size_t(spheres_[i])])) ++i;
+  if (i == count && round_ > 0) return;
   ++round_;
-  if (vertex_count() == 0) return;
-  for (std::size_t i = 0; i < spheres_.size(); ++i) position_[i] = position[std::size_t(spheres_[i])];
+  for (; i < count; ++i) position_[i] = position[std::size_t(spheres_[i])];
 }
 
 /// Finds how far the spheres have moved, once in a round.

@@ -85,7 +85,8 @@ class NearSurface {
   /// Box that contains all vertices at rest [m].
   const Box& rest_box() const { return rest_box_; }
 
-  /// Begins a round with the spheres at `position` [m]. In a round, each vertex is placed once.
+  /// Begins a round with the spheres at `position` [m], or goes on with the last one if none of them has moved. In a
+  /// round, each vertex is placed once.
   void begin(const Vec3Array& position);
   /// Displacements from rest within which those of all vertices lie, or those of a patch or group [m].
   const Box& displacements() const;
