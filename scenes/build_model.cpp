@@ -144,6 +144,7 @@ void set_solver(Model& model, const SolverSpec& solver) {
   model.solver.velocity_floor = solver.velocity_floor.value_or(standard.velocity_floor);
   model.solver.max_iterations = solver.max_iterations.value_or(standard.max_iterations);
   model.solver.substeps = solver.substeps.value_or(standard.substeps);
+  model.solver.sleep_bound = solver.sleep_below.value_or(standard.sleep_bound);
 }
 
 /// Elements at the surface stand for little tissue and are softer than the tissue is.

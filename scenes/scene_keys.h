@@ -373,6 +373,12 @@ void describe_fields(V& v, SolverSpec& solver) {
             within(1, 100000));
   v.integer(Key{"substeps", "Equal parts of a tick; `auto` may take more.", false, "1"}, solver.substeps,
             within(1, 1000));
+  v.number(Key{"sleep_below_mm_per_s",
+               "An organ sleeps once nothing of it has moved faster than this for a tenth of a second: it costs hardly "
+               "any time then, and time stands still in it. It wakes in the tick in which a tool, or an organ that is "
+               "awake, touches it. For scenes with several organs; 0.01 is a good value.",
+               false, "nothing sleeps"},
+           solver.sleep_below, units::millimetre_per_second, above(0, 1000));
 }
 
 inline RecordInfo info_of(const CameraSpec&) { return {"camera", "A view for pictures and videos."}; }

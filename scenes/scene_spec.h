@@ -214,6 +214,7 @@ struct SolverSpec {
   std::optional<double> velocity_floor;  ///< [m/s]
   std::optional<std::int32_t> max_iterations;
   std::optional<std::int32_t> substeps;
+  std::optional<double> sleep_below;  ///< [m/s]; unset: nothing sleeps
 
   friend bool operator==(const SolverSpec&, const SolverSpec&) = default;
 };

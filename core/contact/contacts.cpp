@@ -86,12 +86,14 @@ void Contacts::find(const StateView& state, const HeldTools& tools, const Contac
   if (cut_faces_.is_wanted()) cut_faces_.find(state, points_);
 }
 
-ExplicitContacts Contacts::push_apart(const StateView& middle, const HeldTools& tools, const ContactStep& step,
-                                      Vec3Array& velocity) {
+ExplicitContacts Contacts::detect_in_middle(const StateView& middle, const HeldTools& tools, const ContactStep& step) {
   ExplicitContacts set(*this, step);
   find(middle, tools, step, true);
-  set.tool_force_ = explicit_solve_.solve(step.h, step.pins, middle.velocity, velocity, points_);
   return set;
+}
+
+void ExplicitContacts::push_apart(const Vec3Array& before, Vec3Array& velocity) {
+  tool_force_ = contacts_->explicit_solve_.solve(step_.h, step_.pins, before, velocity, contacts_->points_);
 }
 
 ImplicitContacts Contacts::detect(const StateView& state, const HeldTools& tools, const ContactStep& step,

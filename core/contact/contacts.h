@@ -74,10 +74,9 @@ class Contacts {
   /// Reserves memory for all that can be touched, so that a tick does not allocate unless it touches a cut.
   void reserve(Touched& touched) const;
 
-  /// Detects the contacts of an explicit step in its middle, and changes the `velocity` [m/s] that spheres have after
-  /// the step without contacts. Those that would pull do not act.
-  [[nodiscard]] ExplicitContacts push_apart(const StateView& middle, const HeldTools& tools, const ContactStep& step,
-                                            Vec3Array& velocity);
+  /// Detects the contacts of an explicit step in its middle.
+  [[nodiscard]] ExplicitContacts detect_in_middle(const StateView& middle, const HeldTools& tools,
+                                                  const ContactStep& step);
 
   /// Detects the contacts of an implicit step.
   [[nodiscard]] ImplicitContacts detect(const StateView& state, const HeldTools& tools, const ContactStep& step,
@@ -112,6 +111,13 @@ class Contacts {
 class ContactSet {
  public:
   const ContactStep& step() const { return step_; }
+  const PointContacts& points() const { return contacts_->points_; }
+
+  /// Takes the contacts for which `is_left_out` is true out of the set, before it is solved.
+  template <class IsLeftOut>
+  void leave_out(IsLeftOut&& is_left_out) {
+    contacts_->points_.leave_out(is_left_out);
+  }
 
   /// Number of points that the ball in a hand touches; for a blade, of nodes of its edge that tissue holds, and of
   /// those behind which tissue holds its flanks.
@@ -136,9 +142,13 @@ class ContactSet {
   ContactStep step_;
 };
 
-/// Contacts that an explicit step has solved.
+/// Contacts of an explicit step.
 class ExplicitContacts : public ContactSet {
  public:
+  /// Changes the `velocity` [m/s] that spheres have after the step without contacts; `before`: that at its start. Those
+  /// that would pull do not act.
+  void push_apart(const Vec3Array& before, Vec3Array& velocity);
+
   /// Force of the tissue on the ball or blade in a hand [N].
   Vec3 tool_force(std::size_t hand) const { return tool_force_[hand]; }
 

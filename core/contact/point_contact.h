@@ -89,6 +89,10 @@ class PointContacts {
   /// Number of contacts with the tool in a hand.
   std::int32_t tool_count(std::size_t hand) const;
 
+  template <class IsLeftOut>
+  void leave_out(IsLeftOut&& is_left_out) {
+    std::erase_if(contacts_, is_left_out);
+  }
   void clear() { contacts_.clear(), sphere_.clear(), weight_.clear(); }
 
   /// Prepares an implicit step of `h` [s]: adds to the forces at the start of the solve what damping and grips give

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "core/elements/parts.h"
+
 namespace ctpm::elements {
 namespace {
 
@@ -17,7 +19,7 @@ constexpr std::int32_t kThick = 4096;
 
 Elements::Elements(const Model& model, parallel::Team& team, InstructionSet set)
     : team_(team),
-      slabs_(model.sphere_count()),
+      slabs_(model.solver.sleep_bound > 0 ? parallel::Slabs(parts_of(model)) : parallel::Slabs(model.sphere_count())),
       axial_(model, slabs_, kernels_for(set)),
       constraints_(model, model.constraints, slabs_, kernels_for(set)),
       angles_(model, model.angle_springs, slabs_, kernels_for(set)),
@@ -70,7 +72,7 @@ Elements::Arrays Elements::arrays(const StateView& state) {
 
 void Elements::measure(const Arrays& arrays) {
   if (constraints_.empty() && angles_.empty()) return;
-  team_.for_each(slabs_.count(), [&](int slab) {
+  slabs_.for_each_awake(team_, [&](int slab) {
     if (!softness_.empty()) std::fill(&softness_[0] + slabs_.begin(slab), &softness_[0] + slabs_.end(slab), 1.0);
     constraints_.measure(arrays.constraints, slab);
     angles_.measure(arrays.angles, slab);
@@ -114,7 +116,7 @@ void Elements::linearise_of(int slab, Arrays arrays, double h, bool with_dashpot
 }
 
 void Elements::apply(const double* v, double* result) const {
-  team_.for_each(slabs_.count(), [&](int slab) {
+  slabs_.for_each_awake(team_, [&](int slab) {
     const SlabTarget<double> own = target_for(slab, 3, result);
     constraints_.apply(slab, v, own);
     angles_.apply(slab, v, own);
@@ -126,7 +128,7 @@ void Elements::apply(const double* v, double* result) const {
 template <class Real>
 void Elements::apply_lagged(const Real* v, Real* result) const {
   const std::size_t n = std::size_t(slabs_.end(slabs_.count() - 1));
-  team_.for_each(slabs_.count(), [&](int slab) {
+  slabs_.for_each_awake(team_, [&](int slab) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       std::fill(result + axis * n + slabs_.begin(slab), result + axis * n + slabs_.end(slab), Real(0));
     const SlabTarget<Real> own = target_for(slab, 3, result);
@@ -142,7 +144,7 @@ template void Elements::apply_lagged(const double* v, double* result) const;
 void Elements::find_kelvin_of(double h, AxialForces::KelvinAt at, const StateView& state, std::vector<double>& kelvin) {
   if (state.kelvin_elongation.empty()) return;
   axial_.prepare_kelvin(h, at);
-  team_.for_each(slabs_.count(), [&](int slab) { axial_.find_kelvin(state, kelvin, slab); });
+  slabs_.for_each_awake(team_, [&](int slab) { axial_.find_kelvin(state, kelvin, slab); });
 }
 
 void Elements::find_kelvin(double h, const StateView& state, std::vector<double>& after) {

@@ -15,7 +15,7 @@ namespace ctpm::elements {
 /// All elements of a Model: their forces, and their linearisation for an implicit step.
 class Elements {
  public:
-  /// `model` and `team` must outlive the Elements.
+  /// `model` and `team` must outlive the Elements. Forces and matrices are those of awake slabs alone.
   Elements(const Model& model, parallel::Team& team, InstructionSet set = best_instruction_set());
 
   /// Adds the present forces [N] to `force` (3 x sphere_count): springs, dashpots at StateView::velocity, two-sphere
@@ -62,6 +62,7 @@ class Elements {
   void finish_kelvin(const std::vector<double>& before, std::vector<double>& kelvin) const;
 
   const parallel::Slabs& slabs() const { return slabs_; }
+  parallel::Slabs& slabs() { return slabs_; }
 
  private:
   void find_kelvin_of(double h, AxialForces::KelvinAt at, const StateView& state, std::vector<double>& kelvin);

@@ -46,7 +46,8 @@ bool Resistance::is_cut(std::size_t cell, const std::vector<std::uint8_t>& axial
 void Resistance::find_pressed(const StateView& state) {
   const TissueCells& cells = model_.tissue_cells;
   const double threshold = model_.inversion_threshold;
-  team_.for_each(slabs_.count(), [&](int slab) {
+  for (const int slab : slabs_.asleep()) pressed_[std::size_t(slab)].clear();
+  slabs_.for_each_awake(team_, [&](int slab) {
     std::vector<Pressed>& own = pressed_[std::size_t(slab)];
     own.clear();
     check_.find(slab, state.position, threshold, [&](std::size_t cell) {

@@ -74,6 +74,8 @@ void for_each_field(State_& s, Visit&& visit) {
     give("opening_cuts.axial_severed", s.opening_cuts.axial_severed, severed);
     give("opening_cuts.at", s.opening_cuts_at, within(0, 1e15));
   }
+  // And only where tissue may sleep.
+  if (!std::is_const_v<State_> || !s.still_ticks.empty()) give("still_ticks", s.still_ticks, within(0, 1e9));
 }
 
 template <class Tool_, class Visit>
@@ -196,7 +198,10 @@ void for_each_field(Model_& m, Visit&& visit) {
   give("inversion_threshold", m.inversion_threshold, between(0, 1));
   give("obstacles", m.obstacles, any);
   give("organs_meet", m.organs_meet, any);
-  // Written only of a scene with two hands, and read from every file.
+  // Written only of a scene whose tissue may sleep, and read from every file.
+  if (!std::is_const_v<Model_> || m.solver.sleep_bound != 0)
+    give("solver.sleep_bound", m.solver.sleep_bound, within(0, 1e3));
+  // Likewise only of a scene with two hands.
   if (!std::is_const_v<Model_> || m.hands != 1) give("hands", m.hands, within(1, kMostHands));
 }
 

@@ -205,6 +205,9 @@ struct SolverSettings {
   std::int32_t max_iterations = 200;                   ///< iterations of one solve at most, >= 1
   std::int32_t substeps = 1;                           ///< equal parts of a tick, >= 1
   Integrator integrator = Integrator::backward_euler;  ///< see resolve_integrator()
+  /// A part of the tissue that has not moved faster than this for a while sleeps [m/s], >= 0; 0: nothing does. See
+  /// stepping::Sleepers.
+  double sleep_bound = 0;
 };
 
 /// Everything about a scene that never changes while it runs. Arrays of features that the scene does not have are

@@ -52,7 +52,10 @@ struct State {
   /// (touched_count)
   Vec3Array grip;
   std::vector<double> kelvin_dent;  ///< Kelvin unit's part of the dent at each of them [m]          (touched_count)
-  Inputs last_inputs;               ///< those of the previous tick, where a blade's sweep begins
+  /// For each part of the tissue that may sleep (elements::parts_of), the ticks for which it has been still, up to
+  /// those after which it sleeps; empty where nothing may sleep (part_count).
+  std::vector<std::int32_t> still_ticks;
+  Inputs last_inputs;  ///< those of the previous tick, where a blade's sweep begins
 };
 
 /// The state at rest: rest positions, no motion, nothing severed, no tool.

@@ -22,9 +22,21 @@ std::size_t count_for(std::size_t spheres) {
 
 }  // namespace
 
-Slabs::Slabs(std::size_t sphere_count) {
-  const std::size_t count = count_for(sphere_count);
-  for (std::size_t i = 0; i <= count; ++i) begin_.push_back(std::int32_t(sphere_count * i / count));
+Slabs::Slabs(std::size_t sphere_count) : Slabs(std::vector<SphereRange>{{0, std::int32_t(sphere_count)}}) {}
+
+Slabs::Slabs(const std::vector<SphereRange>& parts) {
+  for (const SphereRange& part : parts) add(part);
+  set_asleep(std::vector<std::uint8_t>(std::size_t(count())));
+}
+
+void Slabs::add(SphereRange spheres) {
+  const auto size = std::size_t(spheres.end - spheres.begin), slabs = count_for(size);
+  for (std::size_t i = 1; i <= slabs; ++i) begin_.push_back(spheres.begin + std::int32_t(size * i / slabs));
+}
+
+void Slabs::set_asleep(const std::vector<std::uint8_t>& asleep) {
+  awake_.clear(), asleep_.clear();
+  for (int slab = 0; slab < count(); ++slab) (asleep[std::size_t(slab)] != 0 ? asleep_ : awake_).push_back(slab);
 }
 
 int Slabs::of(std::int32_t sphere) const {

@@ -30,7 +30,7 @@ double ConjugateGradient<Real>::begin(const elements::Coordinates& residual, dou
   const elements::SolverArrays<Real> m = arrays();
   const elements::SweepCoupling coupling = elements_.sweep_coupling();
   scale_ = scale;
-  energy_ = sum_over_slabs(team_, parts_, [&](int slab) {
+  energy_ = sum_over_slabs(slabs_, team_, parts_, [&](int slab) {
     return kernels_.begin_solve(m, coupling, elements_.sweep(slab), residual.data(), scale);
   });
   return energy_;
@@ -39,7 +39,7 @@ double ConjugateGradient<Real>::begin(const elements::Coordinates& residual, dou
 template <class Real>
 void ConjugateGradient<Real>::add_to(elements::Coordinates& x) const {
   const double factor = 1 / scale_;
-  team_.for_each(slabs_.count(), [&](int slab) {
+  slabs_.for_each_awake(team_, [&](int slab) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t from = axis * spheres_;
       for (std::size_t i = from + std::size_t(slabs_.begin(slab)); i < from + std::size_t(slabs_.end(slab)); ++i)

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "core/elements/elements.h"
@@ -11,19 +12,22 @@
 
 namespace ctpm::solver {
 
-/// Sum over all slabs of part(slab). It adds slab by slab, so the result does not depend on the number of threads.
+/// Sum over all slabs that are awake of part(slab). It adds slab by slab, so the result does not depend on the number
+/// of threads. `parts` is scratch memory (slab_count).
 template <class Part>
-double sum_over_slabs(parallel::Team& team, std::vector<double>& parts, Part&& part) {
-  team.for_each(int(parts.size()), [&](int slab) { parts[std::size_t(slab)] = part(slab); });
+requires std::is_invocable_v<Part, int>
+double sum_over_slabs(const parallel::Slabs& slabs, parallel::Team& team, std::vector<double>& parts, Part&& part) {
+  slabs.for_each_awake(team, [&](int slab) { parts[std::size_t(slab)] = part(slab); });
   double sum = 0;
-  for (const double value : parts) sum += value;
+  for (const int slab : slabs.awake()) sum += parts[std::size_t(slab)];
   return sum;
 }
 
 /// As above, of part(begin, end), each called with a slab's range of spheres.
 template <class Part>
+requires std::is_invocable_v<Part, std::size_t, std::size_t>
 double sum_over_slabs(const parallel::Slabs& slabs, parallel::Team& team, std::vector<double>& parts, Part&& part) {
-  return sum_over_slabs(team, parts,
+  return sum_over_slabs(slabs, team, parts,
                         [&](int slab) { return part(std::size_t(slabs.begin(slab)), std::size_t(slabs.end(slab))); });
 }
 
@@ -73,15 +77,14 @@ double ConjugateGradient<Real>::descend(double enough, std::int32_t& iterations,
   const elements::SweepCoupling coupling = elements_.sweep_coupling();
   double turn = 0;
   while (energy_ > enough && iterations > 0) {
-    team_.for_each(slabs_.count(),
-                   [&](int slab) { kernels_.sweep_up(m, coupling, elements_.sweep(slab), Real(turn)); });
+    slabs_.for_each_awake(team_, [&](int slab) { kernels_.sweep_up(m, coupling, elements_.sweep(slab), Real(turn)); });
     apply_lagged(static_cast<const Real*>(m.upward), m.lagged);
     const double curvature = sum_over_slabs(
-        team_, parts_, [&](int slab) { return kernels_.sweep_down(m, coupling, elements_.sweep(slab)); });
+        slabs_, team_, parts_, [&](int slab) { return kernels_.sweep_down(m, coupling, elements_.sweep(slab)); });
     if (!(curvature > 0)) break;  // not a number, or converged to rounding
     const double step = energy_ / curvature;
-    const double next =
-        sum_over_slabs(team_, parts_, [&](int slab) { return kernels_.descend(m, elements_.sweep(slab), Real(step)); });
+    const double next = sum_over_slabs(
+        slabs_, team_, parts_, [&](int slab) { return kernels_.descend(m, elements_.sweep(slab), Real(step)); });
     turn = next / energy_;
     energy_ = next;
     --iterations;

@@ -1,5 +1,7 @@
 #include "core/solver/linear_solver.h"
 
+#include <algorithm>
+
 namespace ctpm::solver {
 namespace {
 
@@ -45,10 +47,15 @@ void LinearSolver::set_blocks_of(ConjugateGradient<Real>& gradient, const elemen
   const std::size_t n = model_.sphere_count();
   const elements::SolverKernels<Real>& kernels = elements::solver_kernels<Real>(kernels_);
   std::vector<Real>& factor = gradient.factor();
-  team_.for_each(slabs_.count(), [&](int slab) {
+  slabs_.for_each_awake(team_, [&](int slab) {
     kernels.factor_blocks(n, blocks.data(), factor.data(), std::size_t(slabs_.begin(slab)),
                           std::size_t(slabs_.end(slab)));
   });
+  // A sweep's last vector reaches into the next slab. If that sleeps, nobody has set its factor.
+  for (const int slab : slabs_.asleep())
+    for (std::size_t k = 0; k < 6; ++k)
+      std::fill_n(&factor[k * n + std::size_t(slabs_.begin(slab))],
+                  std::min(elements::kLanes, slabs_.end(slab) - slabs_.begin(slab)), Real(0));
   constexpr std::uint8_t kAxes[6] = {1, 3, 5, 2, 6, 4};  // which axes xx, xy, xz, yy, yz, zz belong to
   const auto hold = [&](std::size_t sphere, std::uint8_t axes) {
     // Factors the block of the free axes by itself.
@@ -61,7 +68,12 @@ void LinearSolver::set_blocks_of(ConjugateGradient<Real>& gradient, const elemen
     kernels.factor_blocks(1, own, free, 0, 1);
     for (std::size_t k = 0; k < 6; ++k) factor[k * n + sphere] = (kAxes[k] & axes) == 0 ? free[k] : Real(0);
   };
-  for (const std::int32_t sphere : held_) hold(std::size_t(sphere), model_.held_axes[std::size_t(sphere)]);
+  for (const int slab : slabs_.awake()) {
+    const auto first = std::lower_bound(held_.begin(), held_.end(), slabs_.begin(slab)),
+               last = std::lower_bound(first, held_.end(), slabs_.end(slab));
+    for (auto sphere = first; sphere != last; ++sphere)
+      hold(std::size_t(*sphere), model_.held_axes[std::size_t(*sphere)]);
+  }
   for (const std::int32_t sphere : pinned)
     if (sphere >= 0) hold(std::size_t(sphere), kAnchored);
 }

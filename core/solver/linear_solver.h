@@ -71,7 +71,7 @@ class LinearSolver {
   const parallel::Slabs& slabs_;
   parallel::Team& team_;
   const elements::Kernels& kernels_;
-  std::vector<std::int32_t> held_;  ///< spheres held along one axis or more
+  std::vector<std::int32_t> held_;  ///< spheres held along one axis or more, ascending
   elements::Coordinates residual_;
   std::vector<double> parts_;  ///< of a sum (slab_count)
   std::variant<ConjugateGradient<float>, ConjugateGradient<double>> gradient_;

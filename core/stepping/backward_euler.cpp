@@ -7,6 +7,7 @@ bool BackwardEuler::step(const State& from, const contact::HeldTools& tools, con
   const contact::Pins pins = contact::Contacts::pins(tools, from.position, part.share, part.h);
   contact::ImplicitContacts contacts =
       context_.contacts.detect(from, tools, {part.h, part.h, 0, part.share, pins}, contact::Linearisation::rest);
+  if (context_.sleepers.wakes(contacts)) return false;
   const elements::Coordinates& velocity = solve_.solve(from, part, contacts, report);
   commit_velocity(context_.elements.slabs(), context_.team, velocity, from.position, part.h, to);
   if (!check_.passes(to.velocity, report)) return false;

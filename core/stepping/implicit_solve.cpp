@@ -28,7 +28,6 @@ ImplicitSolve::ImplicitSolve(const StepContext& context)
   const Model& model = context.model;
   context.elements.prepare_linearise(model.tick / model.solver.substeps);
   limits_.relative = model.solver.tolerance;
-  limits_.absolute = model.solver.velocity_floor * std::sqrt(total_mass(model));
   limits_.max_iterations = model.solver.max_iterations;
 }
 
@@ -56,7 +55,7 @@ const elements::Coordinates& ImplicitSolve::solve_near(const StateView& predicte
   const auto resistance = context_.resistance.linearise(predicted, part.h, force_, blocks_);
   const auto for_coordinates = [&](auto&& act) {
     const parallel::Slabs& slabs = context_.elements.slabs();
-    context_.team.for_each(slabs.count(), [&](int slab) {
+    slabs.for_each_awake(context_.team, [&](int slab) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t from = axis * context_.model.sphere_count();
         act(from + std::size_t(slabs.begin(slab)), from + std::size_t(slabs.end(slab)));
@@ -105,9 +104,10 @@ void ImplicitSolve::solve_contacts(const Beginning& beginning, contact::Implicit
   const contact::ContactStep& step = contacts.step();
   for (int round = 0;; ++round) {
     contact::LinearisedContacts linearised = contacts.linearise(force_, blocks_);
-    context_.team.for_each(slabs.count(), [&](int slab) { find_momentum(beginning, step.h, slab); });
+    slabs.for_each_awake(context_.team, [&](int slab) { find_momentum(beginning, step.h, slab); });
     solver_.set_blocks(blocks_, std::array{step.pins[0].sphere, step.pins[1].sphere});
     const solver::SolverOutcome outcome = solver_.solve(
+  limits_.absolute = context_.model.solver.velocity_floor * std::sqrt(context_.sleepers.awake_mass());
         momentum_, change, round == 0 ? beginning.prediction_energy : std::nullopt, limits_,
         [&](const double* in, double* out) {
           context_.elements.apply(in, out);

@@ -29,8 +29,10 @@ bool Leapfrog::step(const State& from, const contact::HeldTools& tools, const Su
   const StateView middle(from, to.position, velocity, to.kelvin_elongation);
   kick(middle, pins, part, to.velocity);
   const std::array<Vec3, kMostHands> on_pin = context_.resistance.push_out(middle, part.h, pins, to.velocity);
-  const contact::ExplicitContacts contacts = context_.contacts.push_apart(
-      middle, tools, {part.h, part.h, half, part.share - half / model.tick, pins}, to.velocity);
+  contact::ExplicitContacts contacts =
+      context_.contacts.detect_in_middle(middle, tools, {part.h, part.h, half, part.share - half / model.tick, pins});
+  if (context_.sleepers.wakes(contacts)) return false;
+  contacts.push_apart(middle.velocity, to.velocity);
   for (std::size_t hand = 0; hand < kMostHands; ++hand) {
     const contact::Pin& pin = pins[hand];
     Vec3& tool_force = report.of_hand(hand).tool_force;

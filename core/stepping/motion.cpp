@@ -20,12 +20,13 @@ void commit(Motion& motion, State& state) {
   std::swap(state.kelvin_elongation, motion.kelvin_elongation);
   std::swap(state.touched, motion.touched.point), std::swap(state.grip, motion.touched.grip);
   std::swap(state.kelvin_dent, motion.touched.kelvin_dent);
+  std::swap(state.still_ticks, motion.still_ticks);
   if (motion.acceleration.size() > 0) std::swap(state.acceleration, motion.acceleration);
 }
 
 void drift(const parallel::Slabs& slabs, parallel::Team& team, const Vec3Array& position, const Vec3Array& velocity,
            double h, Vec3Array& to) {
-  team.for_each(slabs.count(), [&](int slab) {
+  slabs.for_each_awake(team, [&](int slab) {
     for (const auto axis : kAxes) {
       const double *v = (velocity.*axis).data(), *p = (position.*axis).data();
       double* __restrict out = (to.*axis).data();
@@ -36,7 +37,7 @@ void drift(const parallel::Slabs& slabs, parallel::Team& team, const Vec3Array& 
 
 void drift(const parallel::Slabs& slabs, parallel::Team& team, const Vec3Array& velocity, double h,
            Vec3Array& position) {
-  team.for_each(slabs.count(), [&](int slab) {
+  slabs.for_each_awake(team, [&](int slab) {
     for (const auto axis : kAxes) {
       const double* v = (velocity.*axis).data();
       double* __restrict p = (position.*axis).data();
@@ -48,7 +49,7 @@ void drift(const parallel::Slabs& slabs, parallel::Team& team, const Vec3Array& 
 void commit_velocity(const parallel::Slabs& slabs, parallel::Team& team, const elements::Coordinates& velocity,
                      const Vec3Array& position, double h, Motion& to) {
   const std::size_t n = position.size();
-  team.for_each(slabs.count(), [&](int slab) {
+  slabs.for_each_awake(team, [&](int slab) {
     for (std::size_t k = 0; k < 3; ++k) {
       const double *next = &velocity[k * n], *p = (position.*kAxes[k]).data();
       double* __restrict v = (to.velocity.*kAxes[k]).data();

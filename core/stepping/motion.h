@@ -23,6 +23,7 @@ struct Motion {
   Vec3Array acceleration;                 ///< [m/s^2]; empty unless the integrator is SDIRK2 (sphere_count)
   std::vector<double> kelvin_elongation;  ///< [m] (internal_count)
   contact::Touched touched;               ///< State::touched and what belongs to it
+  std::vector<std::int32_t> still_ticks;  ///< as in State
 };
 
 /// Of all spheres [kg].

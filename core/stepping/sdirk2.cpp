@@ -25,7 +25,7 @@ constexpr std::vector<double> Vec3Array::*kAxes[3] = {&Vec3Array::x, &Vec3Array:
 template <class Act>
 void for_coordinates(const StepContext& context, const Act& act) {
   const parallel::Slabs& slabs = context.elements.slabs();
-  context.team.for_each(slabs.count(), [&](int slab) {
+  slabs.for_each_awake(context.team, [&](int slab) {
     for (const auto axis : kAxes) act(axis, std::size_t(slabs.begin(slab)), std::size_t(slabs.end(slab)));
   });
 }
@@ -62,9 +62,9 @@ void find_slope(const StepContext& context, const Vec3Array& from, const Vec3Arr
 }
 
 /// The kinetic energy that a predictor may always miss [J], twice.
-double left_undone_in(const Model& model) {
-  const double velocity = kLeftUndone * model.solver.velocity_floor;
-  return total_mass(model) * velocity * velocity;
+double left_undone_in(const StepContext& context) {
+  const double velocity = kLeftUndone * context.model.solver.velocity_floor;
+  return context.sleepers.awake_mass() * velocity * velocity;
 }
 
 double shortest_element_of(const Model& model) {
@@ -81,7 +81,6 @@ Sdirk2::Sdirk2(const StepContext& context, ImplicitSolve& solve)
       fallback_(context, solve),
       check_(context),
       shortest_element_(shortest_element_of(context.model)),
-      left_undone_(left_undone_in(context.model)),
       predicted_(context.model),
       second_start_(context.model),
       change_(3 * context.model.sphere_count()) {}
@@ -90,10 +89,12 @@ bool Sdirk2::step(const State& from, const contact::HeldTools& tools, const Subs
                   StepReport& report) {
   to.acceleration.resize(from.position.size());
   const StepStatus before = report.status;
+  for (Motion* motion : {&predicted_, &second_start_, &to}) context_.sleepers.keep(from, *motion);
   if (is_short(from, tools, part) && two_stages(from, tools, part, to, report)) {
     find_slope(context_, second_start_.velocity, to.velocity, kStage * part.h, to.acceleration);
     return true;
   }
+  if (context_.sleepers.has_woken()) return false;
   report.status = before;
   ++report.fallbacks;
   if (!fallback_.step(from, tools, part, to, report)) return false;
@@ -149,6 +150,7 @@ bool Sdirk2::dirk_stage(const StateView& start, const contact::HeldTools& tools,
   const double elapsed = is_second ? part.h / kStage : part.h;  // the second stage ends with the step
   contact::ImplicitContacts contacts = context_.contacts.detect(
       predicted, tools, {part.h, elapsed, elapsed, part.share, stage_pins_}, contact::Linearisation::velocity);
+  if (context_.sleepers.wakes(contacts)) return false;
   stage_velocity_ = &solve_.solve_near(predicted, start.velocity, is_second, part, contacts, change_, report);
   commit_velocity(slabs, context_.team, *stage_velocity_, start.position, part.h, to);
   if (!check_.passes(to.velocity, report)) return false;
@@ -168,7 +170,7 @@ bool Sdirk2::was_predicted() {
     const Vec3 own{velocity[i], velocity[n + i], velocity[2 * n + i]};
     energy -= context_.model.mass[i] * dot(own, own);
   }
-  return solve_.energy_of(change_) <= std::max(left_undone_, kLargestPredictorError * energy);
+  return solve_.energy_of(change_) <= std::max(left_undone_in(context_), kLargestPredictorError * energy);
 }
 
 }  // namespace ctpm::stepping

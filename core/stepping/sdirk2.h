@@ -35,7 +35,6 @@ class Sdirk2 {
   BackwardEuler fallback_;
   VelocityCheck check_;
   double shortest_element_;                                ///< at rest [m]
-  double left_undone_;                                     ///< energy that a predictor may always miss, twice [J]
   Motion predicted_;                                       ///< predictor of the end of a stage
   Motion second_start_;                                    ///< end of the first stage, then start of the second
   elements::Coordinates change_;                           ///< velocity of the last stage minus its predictor [m/s]

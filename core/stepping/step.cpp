@@ -95,7 +95,8 @@ struct Stepper::Parts {
   elements::Elements elements;
   contact::Contacts contacts;
   inversion::Resistance resistance;
-  StepContext context{model, kernels, team, elements, contacts, resistance};
+  Sleepers sleepers{model, elements, team, kernels, contacts};
+  StepContext context{model, kernels, team, elements, contacts, resistance, sleepers};
   std::optional<ImplicitSolve> implicit_solve;  ///< empty for leapfrog
   AnyIntegrator integrator;
   std::optional<BladeSweep> blade;  ///< empty if the Model has no scalpel
@@ -129,14 +130,25 @@ void Stepper::Parts::reserve(State& state) const {
 /// One substep into `next`. False: it is refused.
 bool Stepper::Parts::advance(const State& from, const contact::HeldTools& tools, const Substep& part,
                              StepReport& report) {
-  return std::visit(
-      [&]<class Method>(Method& method) {
-        if constexpr (std::is_same_v<Method, std::monostate>)
-          return false;
-        else
-          return method.step(from, tools, part, next, report);
-      },
-      integrator);
+  const StepReport before = report;
+  sleepers.begin(from, tools, part);
+  for (;;) {
+    sleepers.keep(from, next);
+    const bool is_done = std::visit(
+        [&]<class Method>(Method& method) {
+          if constexpr (std::is_same_v<Method, std::monostate>)
+            return false;
+          else
+            return method.step(from, tools, part, next, report);
+        },
+        integrator);
+    if (is_done) break;
+    if (!sleepers.has_woken()) return false;
+    sleepers.resume(), report = before;
+  }
+  sleepers.finish(from, part, next);
+  report.asleep = sleepers.count();
+  return true;
 }
 
 /// Follows what is cut in `state`, with which the tick begins, and the blades from where they were in `last`.

@@ -51,7 +51,8 @@ struct StepReport : HandReport {
   /// Tissue cells that are inside out at the end of the tick (a corner tetrahedron with J < 0); those that a blade cut
   /// do not count. 0 if the Model has no tissue cells.
   std::int32_t inverted = 0;
-  HandReport second;  ///< of the second hand
+  std::int32_t asleep = 0;  ///< spheres that slept in the last substep, see Sleepers
+  HandReport second;        ///< of the second hand
 
   HandReport& of_hand(std::size_t hand) { return hand == 0 ? *this : second; }
   const HandReport& of_hand(std::size_t hand) const { return hand == 0 ? *this : second; }

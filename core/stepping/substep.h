@@ -7,6 +7,7 @@
 #include "core/model/model.h"
 #include "core/parallel/team.h"
 #include "core/stepping/motion.h"
+#include "core/stepping/sleepers.h"
 #include "core/stepping/step.h"
 
 namespace ctpm::stepping {
@@ -27,6 +28,7 @@ struct StepContext {
   elements::Elements& elements;
   contact::Contacts& contacts;
   inversion::Resistance& resistance;
+  Sleepers& sleepers;
 };
 
 /// Ends the contacts of a substep with the spheres in `to`: reports them, and notes what is touched.

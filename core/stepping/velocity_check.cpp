@@ -15,7 +15,8 @@ VelocityCheck::VelocityCheck(const StepContext& context)
 
 bool VelocityCheck::passes(const Vec3Array& velocity, StepReport& report) {
   const parallel::Slabs& slabs = context_.elements.slabs();
-  context_.team.for_each(slabs.count(), [&](int slab) {
+  std::fill(fastest_of_slab_.begin(), fastest_of_slab_.end(), 0.0);
+  slabs.for_each_awake(context_.team, [&](int slab) {
     fastest_of_slab_[std::size_t(slab)] =
         context_.kernels.fastest_squared(velocity.x.data(), velocity.y.data(), velocity.z.data(),
                                          std::size_t(slabs.begin(slab)), std::size_t(slabs.end(slab)));

@@ -67,6 +67,10 @@ Result<std::vector<BenchStudy>> run_bench_space(const BenchOptions& options, con
 /// The structures of the same organs, and the scatter of the force as the lattice is turned under them.
 Result<std::vector<BenchStudy>> run_bench_organ(const BenchOptions& options, const BenchProgress& progress);
 
+/// What a scene's parts that stand still cost asleep and awake while its first organ is pressed, and the error of
+/// leaving them out. Scenes of one part, or without a ball, have no such study.
+Result<std::vector<BenchStudy>> run_bench_sleep(const BenchOptions& options, const BenchProgress& progress);
+
 /// The errors of time, space, structure and lattice phase of each organ in one diagram, force in percent against
 /// milliseconds a tick, and which of them are left out. Empty without CostPoints.
 std::vector<BenchStudy> compare_costs(const std::vector<BenchStudy>& studies);
@@ -89,11 +93,12 @@ struct BenchMotion {
 
 /// Positions, forces and computing time of each tick of a run.
 struct BenchRun {
-  std::vector<Vec3Array> position;  ///< [m]               (tick_count)
-  std::vector<Vec3> force;          ///< on the tool [N]   (tick_count)
-  std::vector<double> seconds;      ///< processor time of the thread, whatever else the machine does [s]  (tick_count)
-  std::int64_t unconverged = 0;     ///< ticks whose solver reached its iteration limit
-  std::int64_t fallbacks = 0;       ///< ticks in which backward Euler took a step for sdirk2
+  std::vector<Vec3Array> position;   ///< [m]               (tick_count)
+  std::vector<Vec3> force;           ///< on the tool [N]   (tick_count)
+  std::vector<double> seconds;       ///< processor time of the thread, whatever else the machine does [s]  (tick_count)
+  std::vector<std::int32_t> asleep;  ///< spheres that slept  (tick_count)
+  std::int64_t unconverged = 0;      ///< ticks whose solver reached its iteration limit
+  std::int64_t fallbacks = 0;        ///< ticks in which backward Euler took a step for sdirk2
   stepping::StepStatus status = stepping::StepStatus::ok;  ///< status that ended the run early; `ok`: none did
 };
 BenchRun run_motion(const Model& model, const BenchMotion& motion);

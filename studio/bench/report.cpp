@@ -28,6 +28,7 @@ reports::Table all_points(const std::vector<BenchStudy>& studies) {
   reports::Table table = bench_layout();
   for (const BenchStudy& study : studies)
     table.rows.insert(table.rows.end(), study.points.rows.begin(), study.points.rows.end());
+  for (std::vector<reports::Cell>& row : table.rows) row.resize(table.columns.size());
   return table;
 }
 

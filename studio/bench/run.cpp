@@ -43,6 +43,7 @@ BenchRun run_motion(const Model& model, const BenchMotion& motion) {
       return run;
     }
     run.position.push_back(state.position), run.force.push_back(report.tool_force);
+    run.asleep.push_back(report.asleep);
   }
   return run;
 }
@@ -113,7 +114,9 @@ reports::Table bench_layout() {
                    {"tick_p999_ms", "p99.9 [ms]", 3},
                    {"unconverged_ticks", "ticks not converged"},
                    {"fallback_ticks", "ticks by backward Euler instead"},
-                   {"front", "Pareto front"}};
+                   {"front", "Pareto front"},
+                   {"sleep_below_mm_per_s", "sleep_below_mm_per_s", 3},
+                   {"asleep", "share of spheres that sleep", 3}};
   return table;
 }
 

@@ -32,11 +32,12 @@ Studies run_studies(const bench::BenchOptions& options) {
     bool is_of_organ;
   };
   std::vector<bench::BenchStudy> studies;
-  for (const Part& part : {Part{"integrators, substeps and tolerances", &bench::run_bench_time, true},
-                           Part{"sphere radius", &bench::run_bench_space, true},
-                           Part{"structure and lattice phase", &bench::run_bench_organ, true},
-                           Part{"structure", &alone<&bench::run_bench_structure>, false},
-                           Part{"tiling", &alone<&bench::run_bench_tiling>, false}}) {
+  for (const Part& part :
+       {Part{"integrators, substeps and tolerances", &bench::run_bench_time, true},
+        Part{"sphere radius", &bench::run_bench_space, true},
+        Part{"structure and lattice phase", &bench::run_bench_organ, true},
+        Part{"sleep", &bench::run_bench_sleep, true}, Part{"structure", &alone<&bench::run_bench_structure>, false},
+        Part{"tiling", &alone<&bench::run_bench_tiling>, false}}) {
     if (!options.scenes.empty() && !part.is_of_organ) continue;
     ProgressLine line(part.title);
     Studies own = part.run(options, [&](std::int64_t done, std::int64_t total) { line.show(done, total); });
@@ -68,7 +69,8 @@ Command add_bench(CLI::App& program) {
   arguments->options.shipped = std::string(CTPM_SOURCE_DIR) + "/scenes";
   CLI::App* app = program.add_subcommand(
       "bench",
-      "Measures error against run time: integrators and steps, sphere radius, structure, lattice phase, tiling.");
+      "Measures error against run time: integrators and steps, sphere radius, structure, lattice phase, what sleeps, "
+      "tiling.");
   app->footer(
       "Examples: ctpm bench -o out/bench\n"
       "          ctpm bench my/liver.json -o out/bench");

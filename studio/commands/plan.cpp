@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/elements/parts.h"
 #include "core/model/errors.h"
 #include "core/model/fields.h"
 #include "core/stepping/step.h"
@@ -58,6 +59,21 @@ std::size_t bytes_of_fields(const Owner& owner, std::string_view prefix) {
   return bytes;
 }
 
+/// What of the tissue may sleep.
+Feature sleep_of(const Model& model) {
+  if (!(model.solver.sleep_bound > 0)) return {"sleep", false, "the scene does not ask for it", 0};
+  const std::vector<parallel::SphereRange> parts = elements::parts_of(model);
+  std::string words = parts.size() == 1 ? "one part, of " : std::to_string(parts.size()) + " parts, of ";
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i > 0) words += i + 1 == parts.size() ? " and " : ", ";
+    words += std::to_string(parts[i].end - parts[i].begin);
+  }
+  char bound[96];
+  std::snprintf(bound, sizeof bound, " spheres, each while nothing in it is faster than %g mm/s",
+                1e3 * model.solver.sleep_bound);
+  return {"sleep", true, words + bound, parts.size() * sizeof(std::int32_t)};
+}
+
 std::vector<Feature> features_of(const scenes::SceneSpec& scene, const Model& m, const State& s) {
   const auto counted = [](std::size_t count, const char* what, const char* none) {
     return count > 0 ? std::to_string(count) + " " + what : std::string(none);
@@ -106,6 +122,7 @@ std::vector<Feature> features_of(const scenes::SceneSpec& scene, const Model& m,
       {"second hand", m.hands > 1, m.hands > 1 ? "two hands hold tools" : "one hand holds a tool", 0},
       {"loads", m.loads.size() > 0, counted(m.loads.size(), "forces from outside", "no forces from outside"),
        bytes_of_fields(m, "loads.")},
+      sleep_of(m),
       {"damage limit", limits, limits ? "an organ has a limit" : "no organ has a limit", 0},
   };
 }

@@ -14,6 +14,7 @@
 #include "core/inversion/resistance.h"
 #include "core/model/fields.h"
 #include "core/model/nearest_rank.h"
+#include "core/stepping/sleepers.h"
 #include "core/stepping/step.h"
 #include "tests/core/skinned_block.h"
 
@@ -196,6 +197,67 @@ void presses(benchmark::State& run, Integrator integrator, double velocity_floor
   report(run, model);
 }
 
+/// Organs side by side, blocks of stiff liver with surfaces, of which a ball presses the first.
+Model row_of_organs(int n, int organs, double sleep_bound) {
+  Model model;
+  for (int k = 0; k < organs; ++k) {
+    FilledOrgan organ = testing::make_block(n, n, n);
+    for (Vec3& centre : organ.centre) centre.x += 0.012 * (n + 2) * k;
+    testing::add_faces(organ, 0.006);
+    network::OrganSettings settings;
+    settings.name = std::to_string(k), settings.structure = network::Structure::ctpm;
+    settings.tiling = network::Tiling::three_spheres;
+    settings.material = testing::liver_material(), settings.material.stiffness_scale = 0.29;
+    for (int i = 0; i < n * n; ++i) settings.anchored.push_back(i);
+    CTPM_CHECK(bool(network::add_organ(model, organ, settings)), "a block of the benchmark is valid");
+  }
+  model.contact_friction = 0.3, model.organs_meet = true;
+  model.tools = {testing::ball(0.006)};
+  testing::use_integrator(model, Integrator::backward_euler);
+  model.solver.sleep_bound = sleep_bound;
+  return model;
+}
+
+/// A press of the first of some organs, while the others stand still: with `sleep_bound` [m/s] they sleep. Beside the
+/// times: the share of the spheres that slept, and errors against the same press with all of them awake, solved to
+/// rounding.
+void organs(benchmark::State& run, double sleep_bound) {
+  const int n = edge_of(run.range(0)), count = int(run.range(1)), threads = int(run.range(2));
+  const Model model = row_of_organs(n, count, sleep_bound);
+  Model all_awake = row_of_organs(n, count, 0);
+  all_awake.solver.tolerance = 1e-9, all_awake.solver.velocity_floor = 1e-15, all_awake.solver.max_iterations = 5000;
+  stepping::Stepper stepper(model, {.threads = threads}), whole(all_awake, {.threads = threads});
+  const auto until_all_sleep = [](stepping::Stepper& of, const Model& its) {
+    State state = rest_state(its);
+    for (int tick = 0; tick <= stepping::Sleepers::ticks_before_sleep(its); ++tick) (void)of.step(state, {});
+    state.tick = 0;
+    return state;
+  };
+  const State start = until_all_sleep(stepper, model);
+  State state = start, awake = until_all_sleep(whole, all_awake);
+  std::vector<double> times;
+  double asleep = 0;
+  for (auto _ : run) {
+    const Inputs inputs = lower(state.tick, n, 0.006);
+    const auto begin = std::chrono::steady_clock::now();
+    const stepping::StepReport report = stepper.step(state, inputs);
+    times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    asleep += report.asleep;
+  }
+  report_times(run, times);
+  double peak = 0, force_error = 0, position_error = 0;
+  for (state = start; state.tick < std::int64_t(times.size());) {
+    const Inputs inputs = lower(state.tick, n, 0.006);
+    const Vec3 force = stepper.step(state, inputs).tool_force, wanted = whole.step(awake, inputs).tool_force;
+    peak = std::max(peak, norm(wanted)), force_error = std::max(force_error, norm(force - wanted));
+    for (std::size_t i = 0; i < model.sphere_count(); ++i)
+      position_error = std::max(position_error, norm(state.position[i] - awake.position[i]));
+  }
+  run.counters["asleep"] = asleep / double(times.size()) / double(model.sphere_count());
+  run.counters["force_error"] = force_error / peak, run.counters["position_error_nm"] = 1e9 * position_error;
+  report(run, model);
+}
+
 /// Search for cells that are turned inside out, of which there are none. Turned tissue takes the slower of two passes.
 void inverted_cells(benchmark::State& run, bool is_turned) {
   const Model model = make_model(run.range(0), network::Structure::ctpm, kPascal, 10);
@@ -270,6 +332,8 @@ BENCHMARK_CAPTURE(presses, sdirk2, Integrator::sdirk2)
     ->ArgsProduct({{5832, 10648}, {1, 2}})
     ->Iterations(500)
     ->UseRealTime();
+BENCHMARK_CAPTURE(organs, all_awake, 0.0)->ArgsProduct({{4913}, {1, 10}, {2}})->Iterations(500)->UseRealTime();
+BENCHMARK_CAPTURE(organs, that_sleep, 1e-5)->ArgsProduct({{4913}, {1, 10}, {2}})->Iterations(500)->UseRealTime();
 BENCHMARK_CAPTURE(ticks, liver_not_stiff, kPascal, as_scenes())
     ->ArgsProduct({{4913, 29791}, {1, 2}})
     ->Iterations(500)

@@ -175,6 +175,41 @@ TEST(BenchCommand, SpendsAMillisecondOnTimeSpaceStructureAndPhase) {
   EXPECT_NE(slurp(folder.path() / "out/report.html").find("Where a millisecond buys most"), std::string::npos);
 }
 
+TEST(Bench, ErrorsOfWhatSleepsStandBesideWhatItSaves) {
+  const TemporaryFolder folder;
+  const importers::RawMesh ball = fidelity::ball_mesh(30e-3, 6e-3);
+  std::ofstream(folder.path() / "ball.obj") << importers::to_obj(ball.vertex, ball.triangle);
+  const auto scene = [&](const std::string& name, const std::string& more) {
+    const std::filesystem::path path = folder.path() / (name + ".json");
+    std::ofstream(path) << R"({"format": "ctpm-scene", "version": 1, "gravity_m_per_s2": [0, 0, 0], "name": ")" + name +
+                               R"(", "organs": [
+      {"name": "pressed", "mesh": "ball.obj", "anchors": [{"lowest_mm": 12}], "material": {"preset": "liver"}})" +
+                               more + R"(], "tools": [{"name": "ball", "kind": "ball", "radius_mm": 8}]})";
+    return path.string();
+  };
+  const std::string one = scene("one", ""), two = scene("two", R"(, {"name": "beside", "mesh": "ball.obj",
+      "at_mm": [100, 0, 0], "anchors": [{"lowest_mm": 12}], "material": {"preset": "liver"}})");
+  bench::BenchOptions options;
+  options.scenes = {one, two};
+  const auto studies = bench::run_bench_sleep(options, [](std::int64_t, std::int64_t) {});
+  ASSERT_TRUE(studies);
+  ASSERT_EQ(studies->size(), 1u) << "one organ is pressed as a whole";
+  const reports::Table& table = studies->front().section.tables.front();
+  const auto at = [&](std::size_t row, const char* key) {
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+      if (table.columns[c].key == key) return std::get<double>(table.rows[row][c]);
+    return std::nan("");
+  };
+  ASSERT_EQ(table.rows.size(), 5u);
+  EXPECT_EQ(at(0, "asleep"), 0);
+  for (std::size_t row = 1; row < 5; ++row) {
+    EXPECT_NEAR(at(row, "asleep"), 0.5, 0.1) << row;
+    EXPECT_LT(at(row, "force_error"), 1e-3) << row;
+    EXPECT_LT(at(row, "farthest_mm"), 0.05) << row;
+  }
+  EXPECT_NE(studies->front().sentences.front().find("of the spheres sleep"), std::string::npos);
+}
+
 TEST(BenchCommand, LeavesOutSpheresThatAreTooCoarseForALayer) {
   const TemporaryFolder folder;
   write_ball_scene(folder, R"("material": {"preset": "liver"},

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -203,6 +204,42 @@ TEST_F(Record, PlanMeasuresTheTicksOfTheSessionThatIsRecorded) {
   EXPECT_TRUE(holds(planned, "1 kHz at p99")) << planned;
   EXPECT_TRUE(holds(ctpm({"plan", "block.json", "--quick"}), "at rest, measured now")) << planned;
   EXPECT_TRUE(holds(ctpm({"plan", "block.json", "--json"}), "\"deed\": \"in contact\""));
+}
+
+/// Two blocks 120 mm apart; their spheres are 12 mm from each other.
+std::string two_blocks(const std::string& solver) {
+  std::string cells;
+  for (int i = 0; i < 18; ++i)
+    cells += (i > 0 ? ", [" : "[") + std::to_string(10 + i % 3) + ", " + std::to_string(i / 3 % 3) + ", " +
+             std::to_string(i / 9) + "]";
+  return R"({"format": "ctpm-scene", "version": 1, "name": "two", "settle_s": 0,
+    "organs": [{"name": "block", "rig": {"block": [3, 3, 2]}, "material": {"preset": "liver"},
+                "anchors": [{"lowest_mm": 1}]},
+               {"name": "other", "rig": {"cells": [)" +
+         cells + R"(]}, "material": {"preset": "liver"}, "anchors": [{"lowest_mm": 1}]}],
+    "tools": [{"name": "ball", "kind": "ball", "radius_mm": 8}])" +
+         solver + "}";
+}
+
+TEST_F(Record, AnOrganThatStandsStillSleepsAndItsSessionReplays) {
+  write("two.json", two_blocks(R"(, "solver": {"sleep_below_mm_per_s": 0.01})"));
+  write("awake.json", two_blocks(""));
+  EXPECT_TRUE(holds(ctpm({"plan", "two.json", "--quick"}),
+                    "2 parts, of 18 and 18 spheres, each while nothing in it is faster than 0.01 mm/s"));
+  EXPECT_TRUE(holds(ctpm({"plan", "awake.json", "--quick"}), "the scene does not ask for it"));
+  for (const std::string scene : {"two", "awake"})
+    ctpm({"record", scene + ".json", "--script", "press.json", "-o", scene + ".ctpm", "--fast"});
+  EXPECT_TRUE(holds(ctpm({"verify", "two.ctpm"}), "same"));
+  // From a moment at which the second block sleeps.
+  ctpm({"replay", "two.ctpm", "--from-s", "1.2", "--to-s", "1.3", "--csv", "late.csv"});
+  ctpm({"replay", "awake.ctpm", "--from-s", "1.2", "--to-s", "1.3", "--csv", "awake.csv"});
+  const std::string late = slurp(folder_.path() / "late.csv"), awake = slurp(folder_.path() / "awake.csv");
+  EXPECT_GT(std::abs(std::stod(cell(awake, 50, kForceZ))), 0.01);
+  EXPECT_NEAR(std::stod(cell(late, 50, kForceZ)), std::stod(cell(awake, 50, kForceZ)), 1e-3);
+  // Its going on is the same, whether the way there is replayed or not.
+  ctpm({"record", "--continue", "two.ctpm", "--at", "1", "--script", "press.json", "-o", "on.ctpm", "--fast",
+        "--duration-s", "0.5"});
+  EXPECT_TRUE(holds(ctpm({"verify", "on.ctpm"}), "same"));
 }
 
 }  // namespace
