@@ -37,7 +37,7 @@ void Elements::make_room(std::size_t full_rows, std::size_t single_rows) {
 }
 
 template <class Real>
-SlabTarget<Real> Elements::target_for(int slab, std::size_t rows, Real* all) const {
+SlabTarget<Real> Elements::target_for(int slab, std::size_t rows, Real* all, std::size_t after) const {
   const auto size = std::size_t(slabs_.end(slab) - slabs_.begin(slab));
   if (slabs_.count() == 1) return {all, 0, size};
   Workbench& workbench = workbenches_[std::size_t(slab)];
@@ -45,12 +45,12 @@ SlabTarget<Real> Elements::target_for(int slab, std::size_t rows, Real* all) con
   if constexpr (std::is_same_v<Real, float>)
     room = workbench.single.data();
   else
-    room = workbench.full.data() + (rows == 6 ? 3 * size : 0);
+    room = workbench.full.data() + after * size;
   std::fill_n(room, rows * size, Real(0));
   return {room, slabs_.begin(slab), size};
 }
-template SlabTarget<float> Elements::target_for(int slab, std::size_t rows, float* all) const;
-template SlabTarget<double> Elements::target_for(int slab, std::size_t rows, double* all) const;
+template SlabTarget<float> Elements::target_for(int slab, std::size_t rows, float* all, std::size_t after) const;
+template SlabTarget<double> Elements::target_for(int slab, std::size_t rows, double* all, std::size_t after) const;
 
 template <class Real>
 void Elements::bring(const SlabTarget<Real>& own, std::size_t rows, Real* all) const {
@@ -99,20 +99,22 @@ void Elements::add_forces_of(int slab, Arrays arrays, Coordinates& force) {
 void Elements::prepare_linearise(double h) {
   constraints_.prepare_linearise(), angles_.prepare_linearise(), axial_.prepare_linearise();
   axial_.prepare_kelvin(h, AxialForces::KelvinAt::end);
-  make_room(9, 3);
+  make_room(12, 3);
 }
 
-void Elements::linearise_of(int slab, Arrays arrays, double h, bool with_dashpots, Coordinates& force,
-                            DiagonalBlocks& blocks) {
-  const SlabTarget<double> own = target_for(slab, 3, force.data()), own_blocks = target_for(slab, 6, blocks.data());
-  arrays.constraints.h = arrays.angles.h = arrays.axial.h = h;
-  arrays.axial.with_dashpots = with_dashpots;
+void Elements::linearise_of(int slab, Arrays arrays, Coordinates& force, DiagonalBlocks& blocks, double* product) {
+  const SlabTarget<double> own = target_for(slab, 3, force.data()), own_blocks = target_for(slab, 6, blocks.data(), 3);
   arrays.constraints.force = arrays.angles.force = arrays.axial.force = own;
   arrays.constraints.blocks = arrays.angles.blocks = arrays.axial.blocks = own_blocks;
+  SlabTarget<double> own_product{};
+  if (product != nullptr) own_product = target_for(slab, 3, product, 9);
+  for (Multiplied* of : {&arrays.constraints.multiplied, &arrays.angles.multiplied, &arrays.axial.multiplied})
+    of->product = own_product;
   constraints_.linearise(arrays.constraints, slab);
   angles_.linearise(arrays.angles, slab);
   axial_.linearise(arrays.axial, slab);
   bring(own, 3, force.data()), bring(own_blocks, 6, blocks.data());
+  if (product != nullptr) bring(own_product, 3, product);
 }
 
 void Elements::apply(const double* v, double* result) const {

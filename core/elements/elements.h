@@ -29,10 +29,10 @@ class Elements {
   /// Adds the elastic forces [N] to `force` and the diagonal of h^2 K + h C [kg] to `blocks` for a step of `h` [s].
   /// Kelvin elongations are those at the end of the step. The forces of dashpots are added only `with_dashpots`;
   /// otherwise the matrix alone accounts for them. Calls before(slab) before anything is added to the spheres of a
-  /// slab.
+  /// slab. If `v` is not null, adds (h^2 K + h C) v to `product`, as apply() would (3 x sphere_count each).
   template <class Before>
   void linearise(const StateView& state, double h, bool with_dashpots, Coordinates& force, DiagonalBlocks& blocks,
-                 Before&& before);
+                 Before&& before, const double* v = nullptr, double* product = nullptr);
 
   /// Finds and allocates what the first linearise() for a step of `h` [s] would.
   void prepare_linearise(double h);
@@ -70,7 +70,7 @@ class Elements {
   /// Scratch memory for the sums of one slab, before they are added to the arrays of all spheres. Unused with a single
   /// slab.
   struct Workbench {
-    std::vector<double> full;   ///< three rows of forces, six of blocks
+    std::vector<double> full;   ///< three rows of forces, six of blocks, three of products
     std::vector<float> single;  ///< three rows
   };
 
@@ -83,13 +83,14 @@ class Elements {
   Arrays arrays(const StateView& state);
   void measure(const Arrays& arrays);
   void add_forces_of(int slab, Arrays arrays, Coordinates& force);
-  void linearise_of(int slab, Arrays arrays, double h, bool with_dashpots, Coordinates& force, DiagonalBlocks& blocks);
+  void linearise_of(int slab, Arrays arrays, Coordinates& force, DiagonalBlocks& blocks, double* product);
 
   void make_room(std::size_t full_rows, std::size_t single_rows);
 
-  /// Where a slab adds three rows (of a vector) or six (of blocks) that belong to `all` (rows x sphere_count).
+  /// Where a slab adds three rows (of a vector) or six (of blocks) that belong to `all` (rows x sphere_count); in the
+  /// workbench so many rows after the first.
   template <class Real>
-  SlabTarget<Real> target_for(int slab, std::size_t rows, Real* all) const;
+  SlabTarget<Real> target_for(int slab, std::size_t rows, Real* all, std::size_t after = 0) const;
 
   /// Adds the sums of a slab to `all`.
   template <class Real>
@@ -108,17 +109,19 @@ void Elements::add_forces(const StateView& state, Coordinates& force, Before&& b
   make_room(3, 0);
   const Arrays all = arrays(state);
   measure(all);
-  team_.for_each(slabs_.count(), [&](int slab) { before(slab), add_forces_of(slab, all, force), after(slab); });
+  slabs_.for_each_awake(team_, [&](int slab) { before(slab), add_forces_of(slab, all, force), after(slab); });
 }
 
 template <class Before>
 void Elements::linearise(const StateView& state, double h, bool with_dashpots, Coordinates& force,
-                         DiagonalBlocks& blocks, Before&& before) {
+                         DiagonalBlocks& blocks, Before&& before, const double* v, double* product) {
   prepare_linearise(h);
-  const Arrays all = arrays(state);
+  Arrays all = arrays(state);
   measure(all);
-  team_.for_each(slabs_.count(),
-                 [&](int slab) { before(slab), linearise_of(slab, all, h, with_dashpots, force, blocks); });
+  all.constraints.h = all.angles.h = all.axial.h = h;
+  all.axial.with_dashpots = with_dashpots;
+  all.constraints.multiplied.v = all.angles.multiplied.v = all.axial.multiplied.v = v;
+  slabs_.for_each_awake(team_, [&](int slab) { before(slab), linearise_of(slab, all, force, blocks, product); });
 }
 
 }  // namespace ctpm::elements

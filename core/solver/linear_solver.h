@@ -32,6 +32,12 @@ struct SolverOutcome {
   bool converged = false;
 };
 
+/// What is known of a first guess x.
+struct FirstGuess {
+  double energy;  ///< energy_of(x), or of what x is a change of [J]
+  bool is_zero;   ///< x is 0, as the change of a velocity; otherwise product() has a part of A x
+};
+
 /// Solves A x = b with A = mass + coupling, symmetric and positive definite, by iterative refinement (Higham, "Accuracy
 /// and stability of numerical algorithms", 2002, ch. 12). Each round computes the residual in double. Its correction
 /// comes from conjugate gradients, in float if the Model is soft enough and otherwise in double. One round mostly
@@ -47,15 +53,17 @@ class LinearSolver {
   /// first guess: their rows are left out of the system.
   void set_blocks(const elements::DiagonalBlocks& blocks, std::span<const std::int32_t> pinned);
 
-  /// `x` is the first guess and the result. `guess_energy` is given if `x` is all zero because it is the change of a
-  /// velocity; it is then energy_of() that velocity. `add_coupling(in, out)` does out += coupling times in, for vectors
-  /// of double; `apply_lagged` is as in ConjugateGradient, for vectors of float and of double.
+  /// `x` is the first guess and the result; `guess`: what is known of it, if anything. `add_coupling(in, out,
+  /// has_part)` does out += coupling times in, for vectors of double, or what product() lacks of that; `apply_lagged`
+  /// is as in ConjugateGradient, for vectors of float and of double.
   template <class AddCoupling, class ApplyLagged>
-  SolverOutcome solve(const elements::Coordinates& b, elements::Coordinates& x, std::optional<double> guess_energy,
+  SolverOutcome solve(const elements::Coordinates& b, elements::Coordinates& x, std::optional<FirstGuess> guess,
                       const SolverLimits& limits, AddCoupling&& add_coupling, ApplyLagged&& apply_lagged);
 
-  /// v . M v [J], twice the kinetic energy of velocity `v` [m/s].
+  /// v . M v [J], twice the kinetic energy of velocity `v` [m/s]. Leaves M v in product().
   double energy_of(const elements::Coordinates& v);
+  /// To M v the caller may add a part of the coupling times v before a solve from `v` (3 x sphere_count).
+  elements::Coordinates& product() { return residual_; }
 
  private:
   template <class Real>
@@ -79,7 +87,7 @@ class LinearSolver {
 
 template <class AddCoupling, class ApplyLagged>
 SolverOutcome LinearSolver::solve(const elements::Coordinates& b, elements::Coordinates& x,
-                                  std::optional<double> guess_energy, const SolverLimits& limits,
+                                  std::optional<FirstGuess> guess, const SolverLimits& limits,
                                   AddCoupling&& add_coupling, ApplyLagged&& apply_lagged) {
   const std::size_t n = model_.sphere_count();
   SolverOutcome outcome;
@@ -88,12 +96,12 @@ SolverOutcome LinearSolver::solve(const elements::Coordinates& b, elements::Coor
   std::visit(
       [&]<class Real>(ConjugateGradient<Real>& gradient) {
         for (bool is_first = true;; is_first = false) {
-          const bool is_zero = is_first && guess_energy.has_value();
-          const double kinetic = is_zero ? *guess_energy : energy_of(x);
-          if (is_zero)
+          const bool is_known = is_first && guess.has_value();
+          const double kinetic = is_known ? guess->energy : energy_of(x);
+          if (is_known && guess->is_zero)
             std::fill(residual_.begin(), residual_.end(), 0.0);
           else
-            add_coupling(static_cast<const double*>(x.data()), residual_.data());
+            add_coupling(static_cast<const double*>(x.data()), residual_.data(), is_known);
           const double squared = sum_over_slabs(slabs_, team_, parts_, [&](std::size_t begin, std::size_t end) {
             return kernels_.residual_from(n, b.data(), residual_.data(), begin, end);
           });

@@ -34,10 +34,15 @@ ImplicitSolve::ImplicitSolve(const StepContext& context)
 const elements::Coordinates& ImplicitSolve::solve(const StateView& start, const Substep& part,
                                                   contact::ImplicitContacts& contacts, StepReport& report) {
   const ExternalLoads loads{context_.model, part.time, part.has_loads};
-  context_.elements.linearise(start, part.h, false, force_, blocks_,
-                              [&](int slab) { begin(start, contacts.step().pins, loads, slab), begin_blocks(slab); });
+  const parallel::Slabs& slabs = context_.elements.slabs();
+  slabs.for_each_awake(context_.team, [&](int slab) { begin(start, contacts.step().pins, loads, slab); });
+  const solver::FirstGuess guess{solver_.energy_of(velocity_), false};
+  // The first residual needs the coupling times the guess, which is multiplied while the coupling is at hand.
+  context_.elements.linearise(
+      start, part.h, false, force_, blocks_, [&](int slab) { begin_blocks(slab); }, velocity_.data(),
+      solver_.product().data());
   const auto resistance = context_.resistance.linearise(start, part.h, force_, blocks_);
-  solve_contacts({start.velocity}, contacts, resistance, velocity_, report);
+  solve_contacts({start.velocity, nullptr, guess}, contacts, resistance, velocity_, report);
   return velocity_;
 }
 
@@ -64,7 +69,7 @@ const elements::Coordinates& ImplicitSolve::solve_near(const StateView& predicte
   };
   for_coordinates(
       [&](std::size_t begin, std::size_t end) { std::fill(change.data() + begin, change.data() + end, 0.0); });
-  solve_contacts({before, &predicted.velocity, energy_of(velocity_)}, contacts, resistance, change, report);
+  solve_contacts({before, &predicted.velocity, {energy_of(velocity_), true}}, contacts, resistance, change, report);
   for_coordinates([&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) velocity_[i] += change[i];
   });
@@ -102,15 +107,15 @@ void ImplicitSolve::solve_contacts(const Beginning& beginning, contact::Implicit
                                    StepReport& report) {
   const parallel::Slabs& slabs = context_.elements.slabs();
   const contact::ContactStep& step = contacts.step();
+  limits_.absolute = context_.model.solver.velocity_floor * std::sqrt(context_.sleepers.awake_mass());
   for (int round = 0;; ++round) {
     contact::LinearisedContacts linearised = contacts.linearise(force_, blocks_);
     slabs.for_each_awake(context_.team, [&](int slab) { find_momentum(beginning, step.h, slab); });
     solver_.set_blocks(blocks_, std::array{step.pins[0].sphere, step.pins[1].sphere});
     const solver::SolverOutcome outcome = solver_.solve(
-  limits_.absolute = context_.model.solver.velocity_floor * std::sqrt(context_.sleepers.awake_mass());
-        momentum_, change, round == 0 ? beginning.prediction_energy : std::nullopt, limits_,
-        [&](const double* in, double* out) {
-          context_.elements.apply(in, out);
+        momentum_, change, round == 0 ? std::optional(beginning.guess) : std::nullopt, limits_,
+        [&](const double* in, double* out, bool has_elements) {
+          if (!has_elements) context_.elements.apply(in, out);
           resistance.apply(in, out), linearised.apply(in, out);
         },
         [&](const auto* in, auto* out) {

@@ -37,9 +37,9 @@ class ImplicitSolve {
  private:
   /// The velocities from which a step is solved.
   struct Beginning {
-    const Vec3Array& before;                    ///< at the start of the step
-    const Vec3Array* prediction = nullptr;      ///< predictor of the velocity at the end; null: none
-    std::optional<double> prediction_energy{};  ///< energy_of() the predictor
+    const Vec3Array& before;      ///< at the start of the step
+    const Vec3Array* prediction;  ///< predictor of the velocity at the end; null: none
+    solver::FirstGuess guess;     ///< of the first solve; it has the elements' part of the product
   };
 
   void begin(const StateView& state, const contact::Pins& pins, const ExternalLoads& loads, int slab);

@@ -144,6 +144,24 @@ void find_tension(const AxialArrays& m, const AxialBatch& batch, const Direction
   }
 }
 
+/// Adds coupling times `v`; of the coupling of a batch, the root of the part along one direction is x, y, z, and the
+/// part in all directions `all`.
+template <class Real>
+void multiply_batch(const AxialBatch& batch, size_t spheres, const Real* x, const Real* y, const Real* z,
+                    const Real* all, const Real* v, const SlabTarget<Real>& result) {
+  alignas(64) Real qx[kBatch], qy[kBatch], qz[kBatch];
+  const Real *xa = v + batch.a, *ya = xa + spheres, *za = ya + spheres;
+  const Real *xb = v + batch.b, *yb = xb + spheres, *zb = yb + spheres;
+  CTPM_INDEPENDENT
+  for (int32_t i = 0; i < batch.count; ++i) {
+    const Real dx = xb[i] - xa[i], dy = yb[i] - ya[i], dz = zb[i] - za[i];
+    const Real t = x[i] * dx + y[i] * dy + z[i] * dz;
+    qx[i] = x[i] * t + all[i] * dx, qy[i] = y[i] * t + all[i] * dy, qz[i] = z[i] * t + all[i] * dz;
+  }
+  if (batch.adds_a) subtract_from(result, batch.a, batch.count, qx, qy, qz);
+  if (batch.adds_b) add_to(result, batch.b, batch.count, qx, qy, qz);
+}
+
 void linearise_axial_of(const AxialArrays& m, const AxialBatch& batch) {
   const int32_t n = batch.count;
   Directions d;
@@ -170,6 +188,8 @@ void linearise_axial_of(const AxialArrays& m, const AxialBatch& batch) {
   }
   float* const coupling_of[4] = {m.root_x, m.root_y, m.root_z, m.across};
   for (int32_t k = 0; k < 4; ++k) convert(kept[k], coupling_of[k] + batch.place, n);
+  if (m.multiplied.v != nullptr)
+    multiply_batch(batch, m.spheres, kept[0], kept[1], kept[2], kept[3], m.multiplied.v, m.multiplied.product);
   if (batch.adds_a) {
     add_to(m.force, batch.a, n, pull[0], pull[1], pull[2]);
     add_to_blocks(m.blocks, batch.a, n, q);
@@ -186,22 +206,10 @@ void linearise_axial(const AxialArrays& m, const AxialBatch* first, const AxialB
 
 void apply_axial(const AxialArrays& m, const AxialBatch* first, const AxialBatch* last, const double* v,
                  SlabTarget<double> result) {
-  alignas(64) double qx[kBatch], qy[kBatch], qz[kBatch];
-  const size_t spheres = m.spheres;
   for (; first != last; ++first) {
-    const AxialBatch& batch = *first;
     Coupling<double> c;
-    c.find(m.root_x, m.root_y, m.root_z, m.across, batch.place, batch.count);
-    const double *xa = v + batch.a, *ya = xa + spheres, *za = ya + spheres;
-    const double *xb = v + batch.b, *yb = xb + spheres, *zb = yb + spheres;
-    CTPM_INDEPENDENT
-    for (int32_t i = 0; i < batch.count; ++i) {
-      const double dx = xb[i] - xa[i], dy = yb[i] - ya[i], dz = zb[i] - za[i];
-      const double t = c.x[i] * dx + c.y[i] * dy + c.z[i] * dz;
-      qx[i] = c.x[i] * t + c.all[i] * dx, qy[i] = c.y[i] * t + c.all[i] * dy, qz[i] = c.z[i] * t + c.all[i] * dz;
-    }
-    if (batch.adds_a) subtract_from(result, batch.a, batch.count, qx, qy, qz);
-    if (batch.adds_b) add_to(result, batch.b, batch.count, qx, qy, qz);
+    c.find(m.root_x, m.root_y, m.root_z, m.across, first->place, first->count);
+    multiply_batch(*first, m.spheres, c.x, c.y, c.z, c.all, v, result);
   }
 }
 

@@ -29,6 +29,12 @@ struct SlabTarget {
   std::size_t stride;  ///< distance between rows
 };
 
+/// What a linearisation multiplies with the coupling that it finds, while that is at hand.
+struct Multiplied {
+  const double* v = nullptr;     ///< (3 x sphere_count); null: nothing
+  SlabTarget<double> product{};  ///< three rows, to which coupling times v is added
+};
+
 /// Axial elements of one law, or springs among Kelvin units (c = 0). Both ends advance by one sphere from place to
 /// place, so that the loops gather no indices. Where a lattice row lacks a few elements, empty places with k = 0 bridge
 /// the gap. An element between two slabs has a place in each; each place adds only to the spheres of its slab, so that
@@ -62,6 +68,7 @@ struct AxialArrays {
   const double* kelvin_elongation;   ///< (internal_count)
   KelvinStep kelvin_step;            ///< of `h`, or of what find_kelvin() finds
   SlabTarget<double> force, blocks;  ///< three and six rows
+  Multiplied multiplied;             ///< in a linearisation
   double h;
   bool with_dashpots;                        ///< the forces of a linearisation include those of dashpots
   float *root_x, *root_y, *root_z, *across;  ///< linearised coupling (place_count)
@@ -97,6 +104,7 @@ struct LineArrays {
   double* softness;                  ///< (sphere_count) or null
   const double* mass;                ///< (sphere_count)
   SlabTarget<double> force, blocks;  ///< three and six rows
+  Multiplied multiplied;             ///< in a linearisation
   double h;
   double* lambda;  ///< of Eq. 2 without Eq. 8, or k of an angle spring [N/m] (place_count)
   float *along_x, *along_y, *along_z, *isotropic;  ///< linearised coupling (place_count)

@@ -236,6 +236,16 @@ void find_coupling(const LineArrays& m, const LineBatch& batch, const Softness& 
   }
 }
 
+/// Adds the lines' coupling times `v`; it is given as that of axial elements.
+template <class Real>
+void multiply_lines(const LineArrays& m, const LineBatch& batch, const Real* x, const Real* y, const Real* z,
+                    const Real* isotropic, const Real* v, const SlabTarget<Real>& result) {
+  act_on_offsets(m, batch, v, v + m.spheres, v + 2 * m.spheres, result, [=](int32_t i, const Three<Real>& r) {
+    const Real t = x[i] * r.x + y[i] * r.y + z[i] * r.z, all = isotropic[i];
+    return Three<Real>{x[i] * t + all * r.x, y[i] * t + all * r.y, z[i] * t + all * r.z};
+  });
+}
+
 LineWeight linearise_line(const LineArrays& m, const LineBatch& batch) {
   const int32_t n = batch.places;
   alignas(64) double q[6][kBatch], kept[4][kBatch];
@@ -260,7 +270,9 @@ LineWeight linearise_line(const LineArrays& m, const LineBatch& batch) {
     matters |= coupling >= kNegligibleCoupling * mass ? 1 : 0;
     leads |= coupling >= kLeadingCoupling * mass ? 1 : 0;
   }
-  if (leads == 0) return matters != 0 ? LineWeight::light : LineWeight::negligible;
+  if (matters == 0) return LineWeight::negligible;
+  if (m.multiplied.v != nullptr) multiply_lines(m, batch, x, y, z, isotropic, m.multiplied.v, m.multiplied.product);
+  if (leads == 0) return LineWeight::light;
   for (int32_t i = 0; i < n; ++i) {
     q[0][i] = x[i] * x[i] + isotropic[i], q[1][i] = x[i] * y[i], q[2][i] = x[i] * z[i];
     q[3][i] = y[i] * y[i] + isotropic[i], q[4][i] = y[i] * z[i], q[5][i] = z[i] * z[i] + isotropic[i];
@@ -273,11 +285,7 @@ template <class Real>
 void apply_line(const LineArrays& m, const LineBatch& batch, const Real* v, SlabTarget<Real> result) {
   Coupling<Real> c;
   c.find(m.along_x, m.along_y, m.along_z, m.isotropic, batch.place, batch.places);
-  const Real *x = c.x, *y = c.y, *z = c.z, *isotropic = c.all;
-  act_on_offsets(m, batch, v, v + m.spheres, v + 2 * m.spheres, result, [=](int32_t i, const Three<Real>& r) {
-    const Real t = x[i] * r.x + y[i] * r.y + z[i] * r.z, all = isotropic[i];
-    return Three<Real>{x[i] * t + all * r.x, y[i] * t + all * r.y, z[i] * t + all * r.z};
-  });
+  multiply_lines(m, batch, c.x, c.y, c.z, c.all, v, result);
 }
 
 template <class Real>

@@ -179,12 +179,32 @@ void expect_solution(const Model& model, double ratio, double error, double tole
   solver.set_blocks(blocks, std::array{pinned});
   const auto outcome = solver.solve(
       b, x, std::nullopt, {0, tolerance * std::sqrt(stepping::total_mass(model)), 20000},
-      [&](const double* in, double* out) { linear.elements.apply(in, out); },
+      [&](const double* in, double* out, bool) { linear.elements.apply(in, out); },
       [&](const auto* in, auto* out) { linear.elements.apply_lagged(in, out); });
   EXPECT_GT(outcome.iterations, 0);
   const Eigen::VectorXd exact = a.ldlt().solve(Eigen::Map<Eigen::VectorXd>(b.data(), Eigen::Index(3 * n)));
   for (std::size_t i = 0; i < 3 * n; ++i)
     ASSERT_NEAR(x[i], exact[Eigen::Index(i)], error * exact.lpNorm<Eigen::Infinity>()) << i;
+}
+
+TEST(Elements, MultiplyWhileTheyAreLinearisedToTheBit) {
+  for (const int n : {6, 16}) {  // one slab, and several
+    for (const double viscosity : {0.0, 5e6}) {
+      Model model = testing::make_block_model(n, n, n, network::Structure::ctpm, [&] {
+        network::Material material = testing::liver_material();
+        material.viscosity = viscosity;
+        return material;
+      }());
+      model.tools = {testing::scalpel(0.02)};
+      Linearised linear(model);
+      const Coordinates v = random_vector(3 * model.sphere_count());
+      Coordinates later = random_vector(v.size()), product = later, force(v.size());
+      linear.elements.apply(v.data(), later.data());
+      linear.elements.linearise(
+          linear.state, 1e-3, false, force, linear.blocks, [](int) {}, v.data(), product.data());
+      EXPECT_EQ(product, later) << n << " " << viscosity;
+    }
+  }
 }
 
 TEST(LinearSolver, AgreesWithADenseFactorisationInBothPrecisions) {
