@@ -66,7 +66,7 @@ void Sleepers::begin(const State& from, const contact::HeldTools& tools, const S
     if (tool.is(ToolKind::pin)) disturb(tool.tool->sphere);
     if (!tool.is(ToolKind::scalpel)) continue;
     for (const std::int32_t organ : from.edge_organ)
-      if (organ >= 0) disturb(model_.organs[std::size_t(organ)].first);
+      if (organ >= 0 && std::size_t(organ) < model_.organs.size()) disturb(model_.organs[std::size_t(organ)].first);
   }
   const Loads& loads = model_.loads;
   for (std::size_t l = 0; l < loads.size(); ++l) {

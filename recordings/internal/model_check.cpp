@@ -407,6 +407,9 @@ Errors check_state(const Model& model, const State& state) {
 
   check.require(model.hands > 1 || state.last_inputs.second == Hand{}, "last_inputs.second",
                 "must be empty in a scene with one hand");
+  const std::size_t most_parts = model.solver.sleep_bound > 0 ? std::max<std::size_t>(model.organs.size(), 1) : 0;
+  check.require(state.still_ticks.size() <= most_parts, "still_ticks",
+                "must have no more entries than there are organs that may sleep");
   // The arrays of severed elements exist where a tool can cut. Older sessions do not store crossings.
   const bool cuts = model.has_scalpel();
   check.length("axial_severed", state.axial_severed.size(), cuts ? model.axial.size() : 0);

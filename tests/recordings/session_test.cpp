@@ -457,7 +457,7 @@ TEST(StateHash, DependsOnEveryFieldAndEveryBit) {
     }
     ++fields;
   });
-  EXPECT_EQ(fields, 41);
+  EXPECT_EQ(fields, 42);
   EXPECT_EQ(recordings::state_hash(state), before);
 }
 
