@@ -82,6 +82,7 @@ std::vector<double> of_block(const Model& model, const State& state, std::size_t
 }
 
 class Sleep : public ::testing::TestWithParam<Integrator> {};
+class SleepInTouch : public Sleep {};
 
 TEST_P(Sleep, LeavesOutAnOrganThatNothingTouches) {
   const Model model = pair(GetParam()), awake = pair(GetParam(), 0);
@@ -212,7 +213,7 @@ Model stack(Integrator integrator, double bound) {
   return model;
 }
 
-TEST_P(Sleep, EndsForAllThatTouchesWhatIsPressed) {
+TEST_P(SleepInTouch, EndsForAllThatTouchesWhatIsPressed) {
   const Model model = stack(GetParam(), 5e-3);
   stepping::Stepper stepper(model);
   State state = rest_state(model);
@@ -307,7 +308,7 @@ TEST_P(Sleep, HoldsForAnyState) {
   EXPECT_TRUE(other.still_ticks.empty());
 }
 
-TEST_P(Sleep, EndsForWhatItsSupportNoLongerHolds) {
+TEST_P(SleepInTouch, EndsForWhatItsSupportNoLongerHolds) {
   Model model = stack(GetParam(), 5e-3);
   stepping::Stepper stepper(model);
   State state = rest_state(model);
@@ -354,13 +355,18 @@ TEST(SleepInSlabs, GivesTheSameBitsWithAnyThreadsAndInstructionSet) {
   EXPECT_NE(plain.position, model.rest_position);
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, Sleep,
-                         ::testing::Values(Integrator::backward_euler, Integrator::sdirk2, Integrator::leapfrog),
-                         [](const auto& of) {
-                           std::string name = stepping::name_of(of.param);
-                           std::erase(name, '-');
-                           return name;
-                         });
+std::string name_of_case(const ::testing::TestParamInfo<Integrator>& of) {
+  std::string name = stepping::name_of(of.param);
+  std::erase(name, '-');
+  return name;
+}
+
+const auto kImplicit = ::testing::Values(Integrator::backward_euler, Integrator::sdirk2);
+const auto kExplicit = ::testing::Values(Integrator::leapfrog);
+INSTANTIATE_TEST_SUITE_P(Implicit, Sleep, kImplicit, name_of_case);
+INSTANTIATE_TEST_SUITE_P(Explicit, Sleep, kExplicit, name_of_case);
+INSTANTIATE_TEST_SUITE_P(Implicit, SleepInTouch, kImplicit, name_of_case);
+INSTANTIATE_TEST_SUITE_P(SlowExplicit, SleepInTouch, kExplicit, name_of_case);
 
 TEST(Parts, AreOrgansThatNoElementJoins) {
   Model model = pair(Integrator::backward_euler);
