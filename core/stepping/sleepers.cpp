@@ -117,16 +117,15 @@ bool Sleepers::wake_touching(const contact::PointContacts& contacts) {
     goes_on = false;
     for (const contact::PointContact& contact : contacts.all()) {
       std::size_t first = parts_.size();
-      bool is_awake = false, is_one = true;
+      bool is_awake = false;
       for (const std::int32_t sphere : contacts.carriers(contact).sphere) {
         const std::size_t part = part_of(sphere);
-        is_one = is_one && (first == parts_.size() || island_[part] == first);
         first = std::min(first, island_[part]), is_awake = is_awake || is_awake_[part] != 0;
       }
       if (!is_awake) continue;
       for (const std::int32_t sphere : contacts.carriers(contact).sphere) {
         const std::size_t part = part_of(sphere);
-        goes_on = goes_on || is_awake_[part] == 0 || !is_one;
+        goes_on = goes_on || is_awake_[part] == 0 || island_[part] != first;
         wake(part), island_[part] = first;
       }
     }

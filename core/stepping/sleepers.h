@@ -10,7 +10,6 @@
 #include "core/model/state.h"
 #include "core/parallel/team.h"
 #include "core/stepping/motion.h"
-#include "core/stepping/step.h"
 
 namespace ctpm::stepping {
 
@@ -19,7 +18,7 @@ struct Substep;
 /// Leaves out of a tick what stands still. A part of the tissue (elements::parts_of) sleeps once none of its spheres
 /// has been faster than SolverSettings::sleep_bound for a while: its elements are not computed, its spheres stay where
 /// they are, and time stands still in it. It is awake in each step in which a tool acts on it, or a load grows, and
-/// while a part that is awake touches it. What it does then depends on State and Inputs alone.
+/// while a part that is awake touches it. All of that depends on State and Inputs alone.
 class Sleepers {
  public:
   /// Everything must outlive the Sleepers.

@@ -105,10 +105,10 @@ double BodyOverlaps::way_of(std::size_t body) {
   return *way_[body];
 }
 
-/// Down to where overlaps of two bodies may be looked for [m].
-double BodyOverlaps::farthest_reach(std::size_t body, std::size_t other) const {
-  return kReach * std::min(model_.organs[std::size_t(bodies_[body].organ)].spacing,
-                           model_.organs[std::size_t(bodies_[other].organ)].spacing);
+/// The smaller of two bodies' spacings [m].
+double BodyOverlaps::finer_spacing(std::size_t body, std::size_t other) const {
+  return std::min(model_.organs[std::size_t(bodies_[body].organ)].spacing,
+                  model_.organs[std::size_t(bodies_[other].organ)].spacing);
 }
 
 void BodyOverlaps::find(std::size_t body, std::vector<Overlap>& overlaps) {
@@ -135,9 +135,8 @@ void BodyOverlaps::find(std::size_t body, std::vector<Overlap>& overlaps) {
 /// Sets how deep overlaps of each patch of `body` with `other` are looked for [m].
 void BodyOverlaps::set_reach(std::size_t body, std::size_t other) {
   const Body& own = bodies_[body];
-  const double far = farthest_reach(body, other);
-  const double near =
-      reaches_far_ ? far : std::min(far, kNewReach / kReach * far + kAhead * (way_of(body) + way_of(other)));
+  const double spacing = finer_spacing(body, other), far = kReach * spacing;
+  const double near = reaches_far_ ? far : std::min(far, kNewReach * spacing + kAhead * (way_of(body) + way_of(other)));
   const auto was_touched = [&](std::int32_t facet) { return is_touched_[std::size_t(own.first_vertex + facet)] != 0; };
   const PatchFacets& facets = facets_[body];
   reach_.clear();
@@ -149,7 +148,7 @@ void BodyOverlaps::set_reach(std::size_t body, std::size_t other) {
 
 /// Looks where the vertices of a body are inside another one, or inside itself.
 void BodyOverlaps::look(std::size_t body, std::size_t other) {
-  if (!patches_[body].all().grown(farthest_reach(body, other)).meets(patches_[other].all())) return;
+  if (!patches_[body].all().grown(kReach * finer_spacing(body, other)).meets(patches_[other].all())) return;
   set_reach(body, other);
   ++look_;
   const double apart = kPatchesApart * model_.organs[std::size_t(bodies_[body].organ)].spacing;

@@ -83,7 +83,7 @@ class BodyOverlaps {
   bool may_meet(std::size_t body, std::size_t other) const;
   std::size_t body_of(std::int32_t facet) const;
   double way_of(std::size_t body);
-  double farthest_reach(std::size_t body, std::size_t other) const;
+  double finer_spacing(std::size_t body, std::size_t other) const;
   void set_reach(std::size_t body, std::size_t other);
   void look(std::size_t body, std::size_t other);
   void look_at_patches(std::size_t body, std::int32_t patch, std::size_t other, std::int32_t other_patch);

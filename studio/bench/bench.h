@@ -109,6 +109,12 @@ double position_error(const BenchRun& run, const BenchRun& reference, const Vec3
                       const std::vector<double>& weight = {});
 double force_error(const BenchRun& run, const BenchRun& reference);
 
+/// Processor time [s per simulated s] of ticks of `tick` [s] that took `seconds`.
+double run_time_of(const std::vector<double>& seconds, double tick);
+
+/// A share for people.
+std::string percent(double share);
+
 /// Whether the tool felt any force.
 bool feels(const BenchRun& run);
 

@@ -10,8 +10,6 @@
 namespace ctpm::bench {
 namespace {
 
-std::string percent(double share) { return output::short_number(100 * share, 2) + " %"; }
-
 /// One line for each kind of error; marks where the scene's own choice is.
 reports::Plot diagram(const std::vector<CostPoint>& points) {
   reports::Plot plot{.title = "error in force against the cost of a tick",

@@ -36,6 +36,11 @@ BenchMotion press_and_release(const Model& model, std::int32_t tool, Vec3 start,
 
 }  // namespace
 
+std::int32_t first_tool(const Model& model, ToolKind kind) {
+  const auto it = std::find_if(model.tools.begin(), model.tools.end(), [&](const Tool& t) { return t.kind == kind; });
+  return it == model.tools.end() ? -1 : std::int32_t(it - model.tools.begin());
+}
+
 BenchMotion press_the_top(const Model& model, std::int32_t ball, const State& start) {
   const std::size_t top = top_of(model);
   Vec3 place = start.position[top] + Vec3{0, 0, model.contact_radius[top]};

@@ -9,6 +9,9 @@
 // What tools do in the study in time, from a State in which the organs rest.
 namespace ctpm::bench {
 
+/// Index of the Model's first tool of a kind; -1: it has none.
+std::int32_t first_tool(const Model& model, ToolKind kind);
+
 /// The ball presses 6 mm deep at 100 mm/s from where it touches the highest place of the first organ's drawn surface,
 /// or where there is none, the highest free sphere; stays, and leaves.
 BenchMotion press_the_top(const Model& model, std::int32_t ball, const State& start);

@@ -2,22 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "core/model/nearest_rank.h"
 #include "core/surface/surface.h"
+#include "studio/bench/motions.h"
 #include "studio/loading/standing.h"
 #include "studio/output/number_text.h"
 
 namespace ctpm::bench {
 namespace {
-
-std::int32_t first_ball(const Model& model) {
-  for (std::size_t i = 0; i < model.tools.size(); ++i)
-    if (model.tools[i].kind == ToolKind::ball) return std::int32_t(i);
-  return -1;
-}
 
 /// The ball comes down on the highest of a surface's vertices [m], 6 mm at 60 mm/s, and stays.
 BenchMotion press_surface(const std::vector<Vec3>& vertices, double ball_radius, double tick) {
@@ -35,18 +29,14 @@ BenchMotion press_surface(const std::vector<Vec3>& vertices, double ball_radius,
 
 }  // namespace
 
-double run_time_of(const BenchRun& run, double tick) {
-  return std::accumulate(run.seconds.begin(), run.seconds.end(), 0.0) / (double(run.seconds.size()) * tick);
-}
-
 bool can_press(const loading::LoadedScene& scene) {
   return !scene.scene.spec.organs.empty() && !scene.scene.spec.organs[0].mesh.empty() &&
-         first_ball(scene.built.model) >= 0;
+         first_tool(scene.built.model, ToolKind::ball) >= 0;
 }
 
 Result<PressedOrgan> press_organ(const loading::LoadedScene& scene, const Model& model) {
   const Surface& surface = scene.organs[0].surface;
-  const std::int32_t ball = first_ball(model);
+  const std::int32_t ball = first_tool(model, ToolKind::ball);
   std::optional<loading::Standing> standing = loading::settle_scene(scene.scene.spec, model);
   std::vector<Vec3> start, drawn;
   surface::deform_surface(surface, standing->state.position, model.organs[0].first, start);
@@ -103,7 +93,7 @@ std::vector<reports::Cell> row_of(const std::string& study, const std::string& s
           organ.spheres,
           std::move(position_error),
           force_error,
-          run_time_of(organ.run, tick),
+          run_time_of(organ.run.seconds, tick),
           1e3 * percentile(seconds, 0.5),
           1e3 * percentile(seconds, 0.99),
           1e3 * percentile(seconds, 0.999),

@@ -12,9 +12,6 @@ namespace ctpm::bench {
 inline constexpr double kRefinement = 1.4142135623730951;
 inline constexpr int kReferenceRefinements = 2;
 
-/// A motion's processor time [s per simulated s].
-double run_time_of(const BenchRun& run, double tick);
-
 /// The first organ of a scene, pressed by the scene's first ball, which comes down 6 mm at 60 mm/s on its highest
 /// vertex and stays.
 struct PressedOrgan {

@@ -9,6 +9,7 @@
 #include "core/model/result.h"
 #include "core/stepping/step.h"
 #include "studio/bench/bench.h"
+#include "studio/output/number_text.h"
 
 namespace ctpm::bench {
 namespace {
@@ -71,6 +72,12 @@ double force_error(const BenchRun& run, const BenchRun& reference) {
   }
   return size > 0 ? std::sqrt(off / size) : 0;
 }
+
+double run_time_of(const std::vector<double>& seconds, double tick) {
+  return std::accumulate(seconds.begin(), seconds.end(), 0.0) / (double(seconds.size()) * tick);
+}
+
+std::string percent(double share) { return output::short_number(100 * share, 2) + " %"; }
 
 bool feels(const BenchRun& run) {
   return std::any_of(run.force.begin(), run.force.end(), [](Vec3 force) { return norm(force) > 0; });

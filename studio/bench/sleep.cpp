@@ -52,17 +52,15 @@ Model exact(Model model) {
 }
 
 /// Empty if the scene is one part, of which nothing stands still while it is pressed.
-Result<std::optional<SleepJob>> make_job(const std::string& path, const BenchOptions& options) {
+Result<std::optional<SleepJob>> make_job(const std::string& path) {
   const Result<loading::LoadedScene> scene = loading::load_whole_scene(path);
   if (!scene) return scene.errors();
-  if (options.take_warnings && !options.scenes.empty()) options.take_warnings(scene->scene.warnings);
   const Model& model = scene->built.model;
-  const auto ball = std::find_if(model.tools.begin(), model.tools.end(),
-                                 [](const Tool& tool) { return tool.kind == ToolKind::ball; });
-  if (ball == model.tools.end() || elements::parts_of(model).size() < 2) return std::optional<SleepJob>();
+  const std::int32_t ball = first_tool(model, ToolKind::ball);
+  if (ball < 0 || elements::parts_of(model).size() < 2) return std::optional<SleepJob>();
   SleepJob job{scene->scene.spec.name, model, {}, stepping::Sleepers::ticks_before_sleep(model) + 20};
   std::optional<loading::Standing> standing = loading::settle_scene(scene->scene.spec, model);
-  const BenchMotion press = press_the_top(model, std::int32_t(ball - model.tools.begin()), standing->state);
+  const BenchMotion press = press_the_top(model, ball, standing->state);
   job.motion.ticks = job.wait + press.ticks, job.motion.start = std::move(standing->state);
   job.motion.hand = [press, wait = job.wait](std::int64_t tick) {
     return tick < wait ? Inputs{} : press.hand(tick - wait);
@@ -101,8 +99,7 @@ Result<Slept> measure(const SleepJob& job, double bound, const std::vector<doubl
   if (solved.status != stepping::StepStatus::ok || std::int64_t(seconds.size()) + job.wait != job.motion.ticks)
     return Error{job.name, "the press of its first organ was refused", "ask `ctpm plan` whether its integrator holds"};
   Slept slept{bound};
-  for (const double tick : seconds) slept.run_time += tick;
-  slept.run_time /= double(seconds.size()) * job.model.tick;
+  slept.run_time = run_time_of(seconds, job.model.tick);
   slept.p50 = percentile(seconds, 0.5), slept.p99 = percentile(seconds, 0.99);
   for (auto asleep = solved.asleep.begin() + job.wait; asleep != solved.asleep.end(); ++asleep) slept.share += *asleep;
   slept.share /= double(seconds.size()) * double(job.model.sphere_count());
@@ -113,7 +110,6 @@ Result<Slept> measure(const SleepJob& job, double bound, const std::vector<doubl
 }
 
 std::string in_mm_per_s(double bound) { return output::short_number(1e3 * bound, 3) + " mm/s"; }
-std::string percent(double share) { return output::short_number(100 * share, 2) + " %"; }
 
 reports::Table table_of(const std::vector<Slept>& all) {
   reports::Table table;
@@ -226,7 +222,7 @@ Result<std::vector<BenchStudy>> run_bench_sleep(const BenchOptions& options, con
   const std::int64_t total = std::int64_t(scenes.size()) * of_scene;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     std::int64_t done = std::int64_t(i) * of_scene;
-    const Result<std::optional<SleepJob>> job = make_job(scenes[i], options);
+    const Result<std::optional<SleepJob>> job = make_job(scenes[i]);
     if (!job) return job.errors();
     if (!*job) continue;
     Result<BenchStudy> study = study_of(**job, [&] { progress(std::min(++done, total), total); });

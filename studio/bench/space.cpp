@@ -18,8 +18,6 @@ struct Compared {
   bool feels = false, is_on_front = false;
 };
 
-std::string percent(double share) { return output::short_number(100 * share, 2) + " %"; }
-
 /// The order of an error between two fillings that follow each other.
 double order_between(double coarse, double fine) { return std::log(coarse / fine) / std::log(kRefinement); }
 

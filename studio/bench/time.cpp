@@ -72,11 +72,6 @@ Model with_setting(Model model, const Setting& setting) {
   return model;
 }
 
-std::int32_t first_tool(const Model& model, ToolKind kind) {
-  const auto it = std::find_if(model.tools.begin(), model.tools.end(), [&](const Tool& t) { return t.kind == kind; });
-  return it == model.tools.end() ? -1 : std::int32_t(it - model.tools.begin());
-}
-
 /// A motion, and the kind of tool that a scene must have for it.
 struct Deed {
   ToolKind kind;
@@ -164,9 +159,7 @@ Point measure(const TimeJob& job, const Setting& setting, const BenchRun& run, c
   point.position_error = position_error(run, reference, job.motion.start->position, job.model.mass);
   point.force_error = force_error(run, reference);
   point.feels = feels(run);
-  double total = 0;
-  for (const double seconds : run.seconds) total += seconds;
-  point.run_time = total / (double(run.seconds.size()) * job.model.tick);
+  point.run_time = run_time_of(run.seconds, job.model.tick);
   point.p50 = percentile(run.seconds, 0.5), point.p99 = percentile(run.seconds, 0.99),
   point.p999 = percentile(run.seconds, 0.999);
   point.unconverged = run.unconverged, point.fallbacks = run.fallbacks;
@@ -222,8 +215,6 @@ constexpr Integrator kIntegrators[] = {Integrator::leapfrog, Integrator::backwar
 struct Gap {
   double position = 0, force = 0;
 };
-
-std::string percent(double share) { return output::short_number(100 * share, 2) + " %"; }
 
 /// Why the steps of a case do not converge; empty if they do.
 std::string why_not_converged(const std::vector<Point>& points, Gap gap) {

@@ -107,6 +107,15 @@ void report_times(benchmark::State& run, const std::vector<double>& times) {
   run.counters["p50_ms"] = 1e3 * percentile(times, 0.5), run.counters["p99_ms"] = 1e3 * percentile(times, 0.99);
 }
 
+/// A tick, whose time [s] is added to `times`.
+stepping::StepReport timed_step(stepping::Stepper& stepper, State& state, const Inputs& inputs,
+                                std::vector<double>& times) {
+  const auto start = std::chrono::steady_clock::now();
+  const stepping::StepReport report = stepper.step(state, inputs);
+  times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  return report;
+}
+
 /// The hand after `tick` ticks: it lowers the first tool at 20 mm/s towards the top of a block of n layers.
 Inputs lower(std::int64_t tick, int n, double gap) {
   Inputs inputs;
@@ -127,9 +136,7 @@ void ticks(benchmark::State& run, double viscosity, const std::optional<SolverSe
   double iterations = 0, unconverged = 0;
   for (auto _ : run) {
     const Inputs inputs = lower(state.tick, edge_of(run.range(0)), 0.006 + 0.006);
-    const auto start = std::chrono::steady_clock::now();
-    const stepping::StepReport report = stepper.step(state, inputs);
-    times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    const stepping::StepReport report = timed_step(stepper, state, inputs, times);
     iterations += report.iterations, unconverged += report.status == stepping::StepStatus::not_converged;
   }
   report_times(run, times);
@@ -185,9 +192,7 @@ void presses(benchmark::State& run, Integrator integrator, double velocity_floor
   double iterations = 0;
   for (auto _ : run) {
     const Inputs inputs = lower(state.tick, n, 0.006);
-    const auto start = std::chrono::steady_clock::now();
-    const stepping::StepReport report = stepper.step(state, inputs);
-    times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    const stepping::StepReport report = timed_step(stepper, state, inputs, times);
     iterations += report.iterations;
   }
   const PressErrors errors = errors_of_press(model, threads, n, state.tick);
@@ -239,9 +244,7 @@ void organs(benchmark::State& run, double sleep_bound) {
   double asleep = 0;
   for (auto _ : run) {
     const Inputs inputs = lower(state.tick, n, 0.006);
-    const auto begin = std::chrono::steady_clock::now();
-    const stepping::StepReport report = stepper.step(state, inputs);
-    times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    const stepping::StepReport report = timed_step(stepper, state, inputs, times);
     asleep += report.asleep;
   }
   report_times(run, times);
