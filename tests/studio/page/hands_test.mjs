@@ -98,11 +98,17 @@ step("the expert's ghost is ahead, or at the same place of its path", async () =
     const tall = columns.filter((rows) => rows.length >= 20);
     return { lowest: Math.max(-1, ...tall.map((rows) => rows[Math.floor(0.9 * rows.length)])), count: tall.flat().length };
   };
+  /** Until pictures that were begun before are on the screen, however slowly it draws. */
+  const shown = () => page.evaluate(async () => {
+    for (let frame = 0; frame < 6; ++frame) await new Promise(requestAnimationFrame);
+  });
   /** The picture when what it shows rests: three in a row are the same. */
   const atRest = async () => {
+    await shown();
     let rests = await canvas.screenshot();
     for (let alike = 0; alike < 2; ) {
       await page.waitForTimeout(200);
+      await shown();
       const next = await canvas.screenshot();
       alike = between(rests, next).count < 20 ? alike + 1 : 0, rests = next;
     }
@@ -116,8 +122,8 @@ step("the expert's ghost is ahead, or at the same place of its path", async () =
   const choose = async (label, far) => {
     await page.locator("aside .field:has-text('the ghost is') select").selectOption({ label });
     const isNear = (mm) => Math.abs(mm - 1e3 * far) < 1.2; // of a pose or two later: the ghost never goes back
-    const shown = await until(() => reading(page, "away from your tool"), isNear);
-    assert.ok(isNear(shown), `${label}: ${shown} mm, ${1e3 * far}`);
+    const away = await until(() => reading(page, "away from your tool"), isNear);
+    assert.ok(isNear(away), `${label}: ${away} mm, ${1e3 * far}`);
   };
   const rests = await atRest();
   await choose("where you are on its path", far[here]);
