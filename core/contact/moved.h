@@ -19,12 +19,14 @@ inline constexpr double kRounding = 1e-6;
 /// lost in rounding [m].
 inline constexpr double kLongestPath = 1e3;
 
-/// How far the farthest of some points has moved, seen from something that moved `by`: from `before` to where they are
-/// in `now`, from number `first` on [m]. Infinitely far if any place is not finite, as in a step that is refused.
-inline double farthest_moved(const Vec3Array& before, const Vec3Array& now, std::size_t first = 0, Vec3 by = {}) {
+/// How far the farthest of points number [begin, end) of `before` has moved, seen from something that moved `by`: to
+/// where they are in `now`, with numbers that are greater by `first` [m]. Infinitely far if any place is not finite, as
+/// in a step that is refused.
+inline double farthest_moved(const Vec3Array& before, std::size_t begin, std::size_t end, const Vec3Array& now,
+                             std::size_t first, Vec3 by) {
   double squared = 0;
   bool is_finite = true;
-  for (std::size_t i = 0; i < before.size(); ++i) {
+  for (std::size_t i = begin; i < end; ++i) {
     const double x = now.x[first + i] - before.x[i] - by.x, y = now.y[first + i] - before.y[i] - by.y,
                  z = now.z[first + i] - before.z[i] - by.z, apart = x * x + y * y + z * z;
     squared = std::max(apart, squared), is_finite &= apart <= std::numeric_limits<double>::max();

@@ -25,7 +25,7 @@ NearObstacle::NearObstacle(const Model& model, surface::Body& body, const surfac
 }
 
 const std::vector<NearObstacle::Found>& NearObstacle::find(const Vec3Array& position) {
-  step_ = farthest_moved(position_, position, std::size_t(organ_.first));
+  step_ = farthest_moved(position_, 0, position_.size(), position, std::size_t(organ_.first), {});
   path_ += step_, ++round_;
   if (version_ != cuts_.version()) find_parts();
   if (!(path_ < kLongestPath)) look_at_all();

@@ -42,7 +42,7 @@ double Reach::clearance(const Box& other) const {
 
 NearTriangles::NearTriangles(const std::vector<BallPart>& whole, std::int32_t slots, CutSurfaces& cuts,
                              std::int32_t kind)
-    : cuts_(cuts), kind_(kind), whole_(whole.size()), whole_slots_(slots), all_(whole) {
+    : cuts_(cuts), kind_(kind), whole_(whole.size()), whole_slots_(slots), all_(whole), round_(whole.size(), 0) {
   // As long as nothing is cut, only the first tick takes memory.
   std::size_t triangles = 0;
   for (const BallPart& part : whole) triangles += part.surface->triangles().size();
@@ -97,11 +97,32 @@ void NearTriangles::find(const Reach& reach, double margin, const Vec3Array& pos
 void NearTriangles::follow(const Reach& reach, const Vec3Array& position) {
   const Vec3 by = reach.centre - reach_.centre;
   const double grown = reach.beyond(reach_.moved(by));
-  grown_ += grown, all_path_ += grown + stretch_ * farthest_moved(position_, position, 0, by);
-  reach_ = reach, position_ = position;
+  grown_ += grown, all_path_ += grown + stretch_ * follow_spheres(position, by);
+  reach_ = reach;
   if (all_path_ < kLongestPath) return;
   grown_ = all_path_ = 0;
   for (Group& group : groups_) group.allowed = -1, group.used = group.grown = group.all_path = 0;
+}
+
+/// How far the farthest sphere has come since the last round, seen from a ball that moved `by` [m].
+double NearTriangles::follow_spheres(const Vec3Array& position, Vec3 by) {
+  position_.resize(position.size());
+  double farthest = 0;
+  for (std::size_t part = 0; part < whole_; ++part) {
+    const surface::NearSurface& surface = *all_[part].surface;
+    const std::span<const std::int32_t> spheres = surface.spheres();
+    if (spheres.empty()) continue;
+    // Where the surface's round goes on, none of its spheres has moved, and they need not be looked at.
+    if (std::exchange(round_[part], surface.round()) == surface.round()) {
+      farthest = std::max(farthest, norm(by));
+      continue;
+    }
+    const auto begin = spheres.front(), end = spheres.back() + 1;
+    farthest = std::max(farthest, farthest_moved(position_, std::size_t(begin), std::size_t(end), position, 0, by));
+    for (const auto axis : {&Vec3Array::x, &Vec3Array::y, &Vec3Array::z})
+      std::copy((position.*axis).begin() + begin, (position.*axis).begin() + end, (position_.*axis).begin() + begin);
+  }
+  return farthest;
 }
 
 /// Brings up to date how much of what is allowed a group has used.

@@ -99,6 +99,7 @@ class NearTriangles {
 
   void find_groups();
   void follow(const Reach& reach, const Vec3Array& position);
+  double follow_spheres(const Vec3Array& position, Vec3 by);
   double find_used(Group& group);
   std::size_t look_at(Group& group, const Reach& reach, double margin);
   void list();
@@ -114,6 +115,7 @@ class NearTriangles {
   double stretch_ = 1;                    ///< a vertex moves at most so many times as far as the farthest sphere
   Reach reach_{Vec3{}, 0};                ///< in the last round
   Vec3Array position_;                    ///< of the spheres in it [m]
+  std::vector<std::uint32_t> round_;      ///< of each of whole organs in it, see surface::NearSurface
   double grown_ = 0;                      ///< sum of how far the reach, seen from the ball, grew in each round [m]
   double all_path_ = 0;                   ///< the same, and of how far the vertices of the farthest sphere moved [m]
   std::vector<BallPart> parts_;           ///< those of whole organs, and patches of which something was found

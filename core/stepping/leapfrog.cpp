@@ -23,6 +23,7 @@ bool Leapfrog::step(const State& from, const contact::HeldTools& tools, const Su
   const double half = 0.5 * part.h;
   const contact::Pins pins = contact::Contacts::pins(tools, from.position, part.share, part.h);
   const Vec3Array& velocity = start_velocity(from, pins);
+  context_.sleepers.keep(from, to);  // contacts are looked for there
   drift(slabs, context_.team, from.position, velocity, half, to.position);
   elements.find_acting_kelvin(part.h, {from, to.position, velocity, from.kelvin_elongation}, to.kelvin_elongation);
 

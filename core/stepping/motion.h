@@ -29,8 +29,9 @@ struct Motion {
 /// Of all spheres [kg].
 double total_mass(const Model& model);
 
-/// Swaps the arrays of `motion` with those of `state`. Never allocates.
-void commit(Motion& motion, State& state);
+/// Puts `motion` into `state`, where what sleeps stays as it is and without motion. Swaps arrays if nothing sleeps, and
+/// otherwise copies the spheres that are awake.
+void commit(const parallel::Slabs& slabs, parallel::Team& team, Motion& motion, State& state);
 
 /// to = position + h * velocity  (sphere_count); `to` must be another array than `position`.
 void drift(const parallel::Slabs& slabs, parallel::Team& team, const Vec3Array& position, const Vec3Array& velocity,

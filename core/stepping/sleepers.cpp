@@ -146,7 +146,7 @@ void Sleepers::keep(const State& from, Motion& to) const {
         std::fill((to.acceleration.*axis).begin() + begin, (to.acceleration.*axis).begin() + end, 0.0);
     }
   });
-  to.kelvin_elongation = from.kelvin_elongation;
+  keep_kelvin(from, to);
 }
 
 bool Sleepers::is_still(std::size_t part, const Vec3Array& velocity) const {

@@ -41,6 +41,10 @@ class Sleepers {
 
   /// Writes what sleeps to `to`, as it is in `from` and without motion.
   void keep(const State& from, Motion& to) const;
+  /// Writes its Kelvin elongations alone.
+  void keep_kelvin(const State& from, Motion& to) const {
+    if (!elements_.slabs().asleep().empty()) to.kelvin_elongation = from.kelvin_elongation;
+  }
 
   /// Ends a substep from `from`: notes in `to` how long its parts have been still, and what touches those that sleep.
   void finish(const State& from, const Substep& substep, Motion& to);

@@ -133,7 +133,7 @@ bool Stepper::Parts::advance(const State& from, const contact::HeldTools& tools,
   const StepReport before = report;
   sleepers.begin(from, tools, part);
   for (;;) {
-    sleepers.keep(from, next);
+    sleepers.keep_kelvin(from, next);
     const bool is_done = std::visit(
         [&]<class Method>(Method& method) {
           if constexpr (std::is_same_v<Method, std::monostate>)
@@ -173,7 +173,7 @@ bool Stepper::Parts::run_substeps(State& state, const contact::HeldTools& tools,
       blade->begin_substep(state);
     }
     if (!advance(state, tools, {h, time, share, has_loads}, report)) return false;
-    commit(next, state);
+    commit(elements.slabs(), team, next, state);
     if (scalpel == nullptr) continue;
     const InStage cutting(watch, Stage::cut);
     blade->end_substep(*scalpel, share, state, report);

@@ -21,9 +21,10 @@ Box widened(const Box& range, double widen, double turned) {
   return Box(range.low - margin, range.high + margin);
 }
 
-bool are_same_bits(Vec3 a, Vec3 b) {
+/// 0 if they are the same, to the bit.
+std::uint64_t different_bits(Vec3 a, Vec3 b) {
   const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
-  return bits(a.x) == bits(b.x) && bits(a.y) == bits(b.y) && bits(a.z) == bits(b.z);
+  return (bits(a.x) ^ bits(b.x)) | (bits(a.y) ^ bits(b.y)) | (bits(a.z) ^ bits(b.z));
 }
 
 /// Spreads the low 10 bits of a number to every third bit.
@@ -196,13 +197,18 @@ void NearSurface::find_places_in_spheres() {
 }
 
 void NearSurface::begin(const Vec3Array& position) {
+  constexpr std::size_t kRun = 32;  // spheres that are compared without a branch
   const std::size_t count = vertex_count() == 0 ? 0 : spheres_.size();
-  std::size_t i = 0;
+  std::size_t same = 0;
+  for (std::uint64_t different = 0; same < count; same += kRun) {
+    for (std::size_t i = same; i < std::min(same + kRun, count); ++i)
+      different |= different_bits(position_[i], position[std::size_t(spheres_[i])]);
+    if (different != 0) break;
+  }
   // What was found while no sphere moved a bit is still so.
-  while (i < count && are_same_bits(position_[i], position[std::size_t(spheres_[i])])) ++i;
-  if (i == count && round_ > 0) return;
+  if (same >= count && round_ > 0) return;
   ++round_;
-  for (; i < count; ++i) position_[i] = position[std::size_t(spheres_[i])];
+  for (std::size_t i = same; i < count; ++i) position_[i] = position[std::size_t(spheres_[i])];
 }
 
 /// Finds how far the spheres have moved, once in a round.

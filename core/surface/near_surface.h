@@ -85,9 +85,14 @@ class NearSurface {
   /// Box that contains all vertices at rest [m].
   const Box& rest_box() const { return rest_box_; }
 
+  /// Spheres of the Model that bounds are about, ascending: all of whole organs, or those that a part follows.
+  std::span<const Index> spheres() const { return spheres_; }
+
   /// Begins a round with the spheres at `position` [m], or goes on with the last one if none of them has moved. In a
   /// round, each vertex is placed once.
   void begin(const Vec3Array& position);
+  /// Number of the round, 0 before the first one.
+  std::uint32_t round() const { return round_; }
   /// Displacements from rest within which those of all vertices lie, or those of a patch or group [m].
   const Box& displacements() const;
   Box displacements(const Bound& bound) const;

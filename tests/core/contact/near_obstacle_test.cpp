@@ -120,10 +120,10 @@ Obstacle above(ObstacleKind kind, Vec3 half = {}, double gap = 0) {
 TEST(FarthestMoved, IsInfinitelyFarWhereAnyPlaceIsNotFinite) {
   Vec3Array before(3), now(5);
   now.set(3, {0, 3, 4});
-  EXPECT_DOUBLE_EQ(contact::farthest_moved(before, now, 2), 5);
+  EXPECT_DOUBLE_EQ(contact::farthest_moved(before, 0, 3, now, 2, {}), 5);
   for (const double bad : {double(NAN), double(INFINITY)}) {
     now.set(2, {bad, 0, 0});
-    EXPECT_EQ(contact::farthest_moved(before, now, 2), INFINITY) << "wherever it is";
+    EXPECT_EQ(contact::farthest_moved(before, 0, 3, now, 2, {}), INFINITY) << "wherever it is";
   }
 }
 
