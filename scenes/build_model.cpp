@@ -142,6 +142,10 @@ void set_solver(Model& model, const SolverSpec& solver) {
   const SolverSettings standard;
   model.solver.tolerance = solver.tolerance.value_or(standard.tolerance);
   model.solver.velocity_floor = solver.velocity_floor.value_or(standard.velocity_floor);
+  // Our choice: a press of stiff tissue needs a third fewer iterations, and its force changes by less than half a
+  // percent of the greatest.
+  constexpr double kEnough = 2e-6;  // [m/s]
+  model.solver.velocity_enough = solver.velocity_enough.value_or(solver.velocity_floor ? 0 : kEnough);
   model.solver.max_iterations = solver.max_iterations.value_or(standard.max_iterations);
   model.solver.substeps = solver.substeps.value_or(standard.substeps);
   model.solver.sleep_bound = solver.sleep_below.value_or(standard.sleep_bound);

@@ -211,7 +211,8 @@ enum class IntegratorSpec { automatic, leapfrog, backward_euler, sdirk2 };
 struct SolverSpec {
   IntegratorSpec integrator = IntegratorSpec::automatic;  ///< automatic: core decides when the Model is built
   std::optional<double> tolerance;
-  std::optional<double> velocity_floor;  ///< [m/s]
+  std::optional<double> velocity_floor;   ///< [m/s]
+  std::optional<double> velocity_enough;  ///< [m/s]
   std::optional<std::int32_t> max_iterations;
   std::optional<std::int32_t> substeps;
   std::optional<double> sleep_below;  ///< [m/s]; unset: nothing sleeps

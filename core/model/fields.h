@@ -201,7 +201,10 @@ void for_each_field(Model_& m, Visit&& visit) {
   // Written only of a scene whose tissue may sleep, and read from every file.
   if (!std::is_const_v<Model_> || m.solver.sleep_bound != 0)
     give("solver.sleep_bound", m.solver.sleep_bound, within(0, 1e3));
-  // Likewise only of a scene with two hands.
+  // Likewise where less is enough after an iteration.
+  if (!std::is_const_v<Model_> || m.solver.velocity_enough != 0)
+    give("solver.velocity_enough", m.solver.velocity_enough, within(0, 1e3));
+  // And only of a scene with two hands.
   if (!std::is_const_v<Model_> || m.hands != 1) give("hands", m.hands, within(1, kMostHands));
 }
 

@@ -201,7 +201,11 @@ struct SolverSettings {
   /// Residual at which an implicit solve stops, relative to that of its first guess of the velocity; the speed of the
   /// body therefore does not matter. In (0, 1). See solver::SolverLimits.
   double tolerance = 1e-4;
-  double velocity_floor = 1e-6;                        ///< residuals below this velocity [m/s] count as solved, > 0
+  double velocity_floor = 1e-6;  ///< residuals below this velocity [m/s] count as solved, > 0
+  /// The same once a solve has made an iteration [m/s], >= 0; what is below velocity_floor changes nothing. A solve
+  /// that makes none leaves what is left of a slow motion undone for ever; one that makes some leaves it to the next
+  /// step.
+  double velocity_enough = 0;
   std::int32_t max_iterations = 200;                   ///< iterations of one solve at most, >= 1
   std::int32_t substeps = 1;                           ///< equal parts of a tick, >= 1
   Integrator integrator = Integrator::backward_euler;  ///< see resolve_integrator()

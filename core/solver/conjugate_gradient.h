@@ -48,10 +48,11 @@ class ConjugateGradient {
   /// Sets r = `scale` * `residual`; returns its energy r . (D + U)^-1 D (D + L)^-1 r.
   double begin(const elements::Coordinates& residual, double scale);
 
-  /// Iterates until the energy of the residual is at most `enough` or `iterations` are used up. Decrements `iterations`
-  /// and returns the energy. `apply_lagged(in, out)` does out = N in, but for what is in pieces of the sweeps.
+  /// Iterates until the energy of the residual is at most `at_once`, or `later` once an iteration was made, or
+  /// `iterations` are used up. Decrements `iterations` and returns the energy. `apply_lagged(in, out)` does out = N in,
+  /// but for what is in pieces of the sweeps.
   template <class ApplyLagged>
-  double descend(double enough, std::int32_t& iterations, ApplyLagged&& apply_lagged);
+  double descend(double at_once, double later, std::int32_t& iterations, ApplyLagged&& apply_lagged);
 
   /// x += c / scale.
   void add_to(elements::Coordinates& x) const;
@@ -72,11 +73,12 @@ class ConjugateGradient {
 
 template <class Real>
 template <class ApplyLagged>
-double ConjugateGradient<Real>::descend(double enough, std::int32_t& iterations, ApplyLagged&& apply_lagged) {
+double ConjugateGradient<Real>::descend(double at_once, double later, std::int32_t& iterations,
+                                        ApplyLagged&& apply_lagged) {
   const elements::SolverArrays<Real> m = arrays();
   const elements::SweepCoupling coupling = elements_.sweep_coupling();
   double turn = 0;
-  while (energy_ > enough && iterations > 0) {
+  for (double enough = at_once; energy_ > enough && iterations > 0; enough = later) {
     slabs_.for_each_awake(team_, [&](int slab) { kernels_.sweep_up(m, coupling, elements_.sweep(slab), Real(turn)); });
     apply_lagged(static_cast<const Real*>(m.upward), m.lagged);
     const double curvature = sum_over_slabs(

@@ -24,6 +24,7 @@ struct SolverLimits {
   double relative = 1e-4;
   double absolute = 0;  ///< residual that always counts as solved
   std::int32_t max_iterations = 200;
+  double enough = 0;  ///< residual that counts as solved once an iteration was made
 };
 
 struct SolverOutcome {
@@ -92,7 +93,7 @@ SolverOutcome LinearSolver::solve(const elements::Coordinates& b, elements::Coor
   const std::size_t n = model_.sphere_count();
   SolverOutcome outcome;
   std::int32_t left = limits.max_iterations;
-  double first_energy = 0, enough = 0;
+  double first_energy = 0, at_once = 0, later = 0;  // energies at which it ends, before and after an iteration
   std::visit(
       [&]<class Real>(ConjugateGradient<Real>& gradient) {
         for (bool is_first = true;; is_first = false) {
@@ -109,13 +110,16 @@ SolverOutcome LinearSolver::solve(const elements::Coordinates& b, elements::Coor
           const double energy = gradient.begin(residual_, scale), unit = scale * scale;
           if (is_first) {
             first_energy = energy / unit;
-            enough = std::max(std::min(first_energy, kinetic) * limits.relative * limits.relative,
-                              limits.absolute * limits.absolute);
+            at_once = std::max(std::min(first_energy, kinetic) * limits.relative * limits.relative,
+                               limits.absolute * limits.absolute);
+            later = std::max(at_once, limits.enough * limits.enough);
           }
           const std::int32_t before = left;
-          const double reached = gradient.descend(std::max(enough * unit, energy * kGain<Real>), left, apply_lagged);
+          const double rounding = energy * kGain<Real>;
+          const double reached = gradient.descend(std::max(at_once * unit, rounding), std::max(later * unit, rounding),
+                                                  left, apply_lagged);
           if (left != before) gradient.add_to(x);
-          outcome.converged = reached <= enough * unit;
+          outcome.converged = reached <= (left == limits.max_iterations ? at_once : later) * unit;
           outcome.residual = first_energy > 0 ? std::sqrt(reached / unit / first_energy) : 0.0;
           if (outcome.converged || left == before || left == 0) break;
         }

@@ -107,7 +107,9 @@ void ImplicitSolve::solve_contacts(const Beginning& beginning, contact::Implicit
                                    StepReport& report) {
   const parallel::Slabs& slabs = context_.elements.slabs();
   const contact::ContactStep& step = contacts.step();
-  limits_.absolute = context_.model.solver.velocity_floor * std::sqrt(context_.sleepers.awake_mass());
+  const double root_of_mass = std::sqrt(context_.sleepers.awake_mass());
+  limits_.absolute = context_.model.solver.velocity_floor * root_of_mass;
+  limits_.enough = context_.model.solver.velocity_enough * root_of_mass;
   for (int round = 0;; ++round) {
     contact::LinearisedContacts linearised = contacts.linearise(force_, blocks_);
     slabs.for_each_awake(context_.team, [&](int slab) { find_momentum(beginning, step.h, slab); });

@@ -63,7 +63,8 @@ void find_slope(const StepContext& context, const Vec3Array& from, const Vec3Arr
 
 /// The kinetic energy that a predictor may always miss [J], twice.
 double left_undone_in(const StepContext& context) {
-  const double velocity = kLeftUndone * context.model.solver.velocity_floor;
+  const SolverSettings& solver = context.model.solver;
+  const double velocity = kLeftUndone * std::max(solver.velocity_floor, solver.velocity_enough);
   return context.sleepers.awake_mass() * velocity * velocity;
 }
 

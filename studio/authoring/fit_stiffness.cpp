@@ -48,7 +48,7 @@ scenes::SceneSpec slow_scene(const scenes::SceneSpec& scene, std::size_t organ, 
   ball.name = "ball", ball.kind = ToolKind::ball, ball.radius = 1e-3 * rig::site_of(own).ball_radius;
   slow.tools = {ball};
   slow.contact_friction = scene.contact_friction;
-  slow.solver.tolerance = 1e-6, slow.solver.max_iterations = 2000;
+  slow.solver.tolerance = 1e-6, slow.solver.velocity_enough = 0, slow.solver.max_iterations = 2000;
   return slow;
 }
 

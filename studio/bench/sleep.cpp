@@ -47,7 +47,8 @@ Model with_bound(Model model, double bound) {
 
 /// Solved so well that only what sleeps makes a difference.
 Model exact(Model model) {
-  model.solver.tolerance = 1e-9, model.solver.velocity_floor = 1e-13, model.solver.max_iterations = 5000;
+  model.solver.tolerance = 1e-9, model.solver.velocity_floor = 1e-13, model.solver.velocity_enough = 0,
+  model.solver.max_iterations = 5000;
   return model;
 }
 

@@ -68,6 +68,7 @@ Model with_setting(Model model, const Setting& setting) {
   model.solver.substeps = setting.substeps;
   model.solver.tolerance = setting.tolerance;
   model.solver.velocity_floor = std::min(model.solver.velocity_floor, 1e-2 * setting.tolerance);
+  model.solver.velocity_enough = std::min(model.solver.velocity_enough, 1e-1 * setting.tolerance);
   model.solver.max_iterations = 2000;
   return model;
 }

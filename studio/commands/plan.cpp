@@ -132,13 +132,18 @@ std::string solver_of(const Model& model, const stepping::IntegratorChoice& choi
   std::string words = stepping::name_of(choice.integrator);
   if (choice.substeps > 1) words += ", " + std::to_string(choice.substeps) + " substeps a tick";
   if (choice.integrator == Integrator::leapfrog) return words;
-  char limits[160];
-  std::snprintf(
-      limits, sizeof limits,
-      ", conjugate gradients to a residual of %g or below %g mm/s (velocity_floor_mm_per_s), whichever is first, at "
-      "most %d iterations",
-      model.solver.tolerance, 1e3 * model.solver.velocity_floor, model.solver.max_iterations);
-  return words + limits;
+  const SolverSettings& solver = model.solver;
+  char limits[240];
+  std::snprintf(limits, sizeof limits,
+                ", conjugate gradients to a residual of %g or below %g mm/s (velocity_floor_mm_per_s)",
+                solver.tolerance, 1e3 * solver.velocity_floor);
+  words += limits;
+  if (solver.velocity_enough > solver.velocity_floor) {
+    std::snprintf(limits, sizeof limits, " or, after an iteration, %g mm/s (velocity_enough_mm_per_s)",
+                  1e3 * solver.velocity_enough);
+    words += limits;
+  }
+  return words + ", whichever is first, at most " + std::to_string(solver.max_iterations) + " iterations";
 }
 
 /// Tissue that is thinner than its spheres can carry, and parts without spheres: one warning an organ and kind.

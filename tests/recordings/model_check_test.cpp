@@ -154,6 +154,7 @@ TEST(ModelCheck, NamesTheFieldAndWhatItMustBe) {
       {"obstacles[0].vertex.y[2] must be in [-1000, 1000]", [](Model& m) { m.obstacles[0].vertex.y[2] = INFINITY; }},
       {"solver.tolerance must be in (1e-16, 1)", [](Model& m) { m.solver.tolerance = 1; }},
       {"solver.sleep_bound must be in [0, 1000]", [](Model& m) { m.solver.sleep_bound = -1; }},
+      {"solver.velocity_enough must be in [0, 1000]", [](Model& m) { m.solver.velocity_enough = -1; }},
       {"solver.max_iterations must be in [1, 1000000]", [](Model& m) { m.solver.max_iterations = 0; }},
       {"solver.substeps must be in [1, 10000]", [](Model& m) { m.solver.substeps = 10001; }},
       {"solver.integrator is of an unknown kind", [](Model& m) { m.solver.integrator = static_cast<Integrator>(3); }},

@@ -106,21 +106,25 @@ TEST(BuildModel, SolverSettingsAreTheScenesOrElseThoseOfTheCore) {
   const SolverSettings standard;
   EXPECT_EQ(plain.model.solver.tolerance, standard.tolerance);
   EXPECT_EQ(plain.model.solver.velocity_floor, standard.velocity_floor);
+  EXPECT_EQ(plain.model.solver.velocity_enough, 2e-6);
   EXPECT_EQ(plain.model.solver.max_iterations, standard.max_iterations);
   EXPECT_EQ(plain.model.solver.substeps, standard.substeps);
   EXPECT_EQ(plain.model.solver.sleep_bound, 0);
   const scenes::BuiltScene own = build(
       block_scene("",
                   R"(, "solver": {"tolerance": 1e-7, "velocity_floor_mm_per_s": 2, "max_iterations": 77, "substeps": 3,
-                      "sleep_below_mm_per_s": 0.5},
+                      "velocity_enough_mm_per_s": 4, "sleep_below_mm_per_s": 0.5},
       "tick_s": 0.002, "gravity_m_per_s2": [1, 2, 3])"));
   EXPECT_EQ(own.model.solver.tolerance, 1e-7);
   EXPECT_EQ(own.model.solver.velocity_floor, 0.002);
+  EXPECT_EQ(own.model.solver.velocity_enough, 0.004);
   EXPECT_EQ(own.model.solver.max_iterations, 77);
   EXPECT_EQ(own.model.solver.substeps, 3);
   EXPECT_EQ(own.model.solver.sleep_bound, 0.0005);
   EXPECT_EQ(own.model.tick, 0.002);
   EXPECT_EQ(own.model.gravity, (Vec3{1, 2, 3}));
+  const scenes::BuiltScene strict = build(block_scene("", R"(, "solver": {"velocity_floor_mm_per_s": 1e-6})"));
+  EXPECT_EQ(strict.model.solver.velocity_enough, 0) << "a scene's own floor holds after an iteration, too";
 }
 
 TEST(BuildModel, AToolIsTwentyTimesAsStiffAsTheStiffestEdgeUnlessTheSceneSaysMore) {

@@ -50,7 +50,7 @@ const std::string kScene =
    {"name": "knife", "kind": "scalpel", "blade_length_mm": 50, "blade_reach_mm": 8, "flank_height_mm": 5, "blade_thickness_mm": 2}],
  "contact_stiffness_n_per_m": 500, "contact_friction": 0.2, "contact_damping_s_per_m": 40, "cut_face_stiffening": 5,
  "loads": [{"at_mm": [1, 2, 3], "force_n": [0, 0, 1], "start_s": 1, "ramp_s": 2}], "probes": [{"name": "p", "at_mm": [1, 2, 3]}],
- "solver": {"tolerance": 1e-5, "velocity_floor_mm_per_s": 1e-3, "max_iterations": 100, "substeps": 2, "sleep_below_mm_per_s": 0.01},
+ "solver": {"tolerance": 1e-5, "velocity_floor_mm_per_s": 1e-3, "velocity_enough_mm_per_s": 2e-3, "max_iterations": 100, "substeps": 2, "sleep_below_mm_per_s": 0.01},
  "cameras": [{"name": "front", "eye_mm": [1, 2, 3], "target_mm": [0, 0, 0], "up": [0, 0, 1], "field_of_view_deg": 30}]})";
 
 const std::string kScript = R"({"format": "ctpm-script", "version": 1, "steps": [

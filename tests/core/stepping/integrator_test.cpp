@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "core/elements/forces.h"
 #include "core/stepping/step.h"
 #include "tests/core/blocks.h"
+#include "tests/core/skinned_block.h"
 
 namespace ctpm {
 namespace {
@@ -201,6 +204,66 @@ TEST(Sdirk2, NeedsNoBackwardEulerForWhatIsBelowTheErrorOfSolves) {
   EXPECT_EQ(fallbacks(3e-8), 0);
   EXPECT_EQ(fallbacks(3e-6), 1);
 }
+
+class VelocityEnough : public ::testing::TestWithParam<Integrator> {};
+
+TEST_P(VelocityEnough, LeavesNoSlowMotionUndoneForEver) {
+  // In a tick the block gets faster by less than is enough, and by more than the floor.
+  // A stage of SDIRK2 is 0.29 of a tick.
+  const double gravity = GetParam() == Integrator::sdirk2 ? 5e-3 : 1.5e-3, fallen = gravity * 0.5;  // [m/s^2], [m/s]
+  const auto speed = [gravity](double floor, double enough) {
+    network::Material soft = liver_material();
+    soft.stiffness_scale = 1e-3;
+    Model model = make_block_model(3, 3, 3, network::Structure::ctpm, soft);
+    model.held_axes.assign(model.sphere_count(), 0);
+    model.gravity = {0, 0, -gravity};
+    testing::use_integrator(model, GetParam());
+    model.solver.velocity_floor = floor, model.solver.velocity_enough = enough;
+    stepping::Stepper stepper(model);
+    State state = rest_state(model);
+    while (state.tick < 500) EXPECT_EQ(stepper.step(state, {}).status, stepping::StepStatus::ok);
+    return -state.velocity.z[13];
+  };
+  EXPECT_NEAR(speed(1e-6, 2e-6), fallen, 0.05 * fallen);
+  EXPECT_EQ(speed(2e-6, 0), 0) << "a floor that is as high does, so this is no idle test";
+}
+
+TEST_P(VelocityEnough, SavesIterationsOfAPressAndKeepsItsForce) {
+  struct Press {
+    double iterations = 0;
+    std::vector<double> force;  // [N]
+  };
+  const auto press = [](double enough) {
+    network::Material stiff = liver_material();
+    stiff.stiffness_scale = 0.29;
+    Model model = testing::make_skinned_block(9, 9, 9, network::Structure::ctpm, 0.006, stiff);
+    model.tools = {testing::ball(0.006)};
+    testing::use_integrator(model, GetParam());
+    model.solver.velocity_enough = enough;
+    stepping::Stepper stepper(model);
+    State state = rest_state(model);
+    Press of;
+    while (state.tick < 400) {
+      Inputs inputs;
+      inputs.tool = 0, inputs.position = {0.001, 0.002, 0.012 * 8 + 0.006 - 2e-5 * double(state.tick)};
+      const stepping::StepReport report = stepper.step(state, inputs);
+      EXPECT_EQ(report.status, stepping::StepStatus::ok);
+      of.iterations += report.iterations, of.force.push_back(norm(report.tool_force));
+    }
+    return of;
+  };
+  const Press every = press(0), enough = press(2e-6);
+  // Of SDIRK2 most solves need one iteration only.
+  EXPECT_LT(enough.iterations, (GetParam() == Integrator::sdirk2 ? 0.99 : 0.8) * every.iterations);
+  const double most = *std::max_element(every.force.begin(), every.force.end());
+  for (std::size_t i = 0; i < every.force.size(); ++i) EXPECT_NEAR(enough.force[i], every.force[i], 5e-3 * most) << i;
+  EXPECT_EQ(press(1e-7).force, every.force) << "less than the floor changes no bit";
+}
+
+INSTANTIATE_TEST_SUITE_P(Implicit, VelocityEnough, ::testing::Values(Integrator::backward_euler, Integrator::sdirk2),
+                         [](const auto& info) {
+                           return info.param == Integrator::sdirk2 ? "Sdirk2" : "BackwardEuler";
+                         });
 
 TEST(Leapfrog, ALoadThatStartsAtOnceIsOfSecondOrder) {
   const auto height = [](double tick) {

@@ -30,7 +30,10 @@ void do_main_job(const TemporaryFolder& folder, const std::string& mesh,
   const auto checked = run_ctpm({"check", "organ.json"}, folder.path());
   EXPECT_EQ(checked.code, 0) << checked.err;
   const auto planned = run_ctpm({"plan", "organ.json"}, folder.path());
-  EXPECT_NE(planned.out.find("or below 0.001 mm/s (velocity_floor_mm_per_s)"), std::string::npos) << planned.out;
+  EXPECT_NE(planned.out.find("or below 0.001 mm/s (velocity_floor_mm_per_s) or, after an iteration, 0.002 mm/s "
+                             "(velocity_enough_mm_per_s), whichever is first"),
+            std::string::npos)
+      << planned.out;
   EXPECT_EQ(planned.code, 0) << planned.err;
   EXPECT_TRUE(holds(planned.out, "left out:")) << planned.out;
   const auto preview =
