@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <string_view>
 
 #include "core/model/fields.h"
 #include "recordings/byte_hash.h"
@@ -220,6 +221,10 @@ std::vector<Spell> cuts_of(const SessionTrack& track, const Model& model) {
   return cuts;
 }
 
+/// How well a tick is solved after its first iteration is no matter of the scene: sessions recorded before scenes had a
+/// say in that are compared with later ones.
+constexpr std::string_view kNoMatter = "solver.velocity_enough";
+
 /// The fields of a Model as bytes, by name.
 struct FieldBytes {
   std::vector<std::pair<std::string, std::string>>& fields;
@@ -228,6 +233,7 @@ struct FieldBytes {
 
   template <class T>
   void operator()(std::string_view name, const T& value) {
+    if (name == kNoMatter) return;
     if constexpr (std::is_same_v<T, std::string>) {
       if (names == Names::count) fields.emplace_back(prefix + std::string(name), value);
     } else {

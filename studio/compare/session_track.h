@@ -87,7 +87,8 @@ Result<SessionTrack> read_track(recordings::SessionReader& session, Replaying re
                                 const ReplayWatch& watch = {});
 
 /// Checks that both sessions have the same Model: network, tools and physics. Values that do not act on the tissue
-/// (cameras, colours) may differ, and names if one of the sessions is anonymised. Errors: the first difference.
+/// (cameras, colours), or hardly (solver.velocity_enough), may differ, and names if one of the sessions is anonymised.
+/// Errors: the first difference.
 Result<Done> check_same_scene(const recordings::SessionReader& expert, const recordings::SessionReader& trainee);
 
 /// Whether names of organs, tools and obstacles tell scenes apart. Anonymised sessions hold pseudonyms of them.

@@ -37,6 +37,12 @@ TEST(SameScene, ADifferenceIsNamedAndLooksMayDiffer) {
   EXPECT_NE(reason("c.ctpm", softer).find("differs in axial.k"), std::string::npos);
   EXPECT_NE(reason("d.ctpm", larger).find("36 spheres instead of 27"), std::string::npos);
   EXPECT_NE(reason("e.ctpm", other_tool).find("its tools are fist"), std::string::npos);
+  // Of the time before scenes had a say in it.
+  recordings::SessionStart less_exact = start;
+  less_exact.model.solver.velocity_enough = 2e-6;
+  EXPECT_EQ(reason("g.ctpm", less_exact), "");
+  EXPECT_EQ(compare::scene_hash(less_exact.model), compare::scene_hash(start.model));
+  EXPECT_NE(compare::scene_hash(softer.model), compare::scene_hash(start.model));
   EXPECT_NE(reason("f.ctpm", testing::small_start(3, 3, 3, 2)).find("2 hands instead of 1"), std::string::npos);
 }
 
