@@ -370,8 +370,8 @@ void describe_fields(V& v, SolverSpec& solver) {
   v.number(Key{"velocity_floor_mm_per_s", "Absolute tolerance of the velocities.", false, "0.001"},
            solver.velocity_floor, units::millimetre_per_second, above(0, 1000));
   v.number(Key{"velocity_enough_mm_per_s",
-               "The same once a solve has made an iteration: a tick takes less time then, and what is left is left to "
-               "the next one.",
+               "Absolute tolerance of the velocities once a solve has made an iteration. A tick takes less time then; "
+               "what it leaves goes to the next one.",
                false, "0.002, or `velocity_floor_mm_per_s` where a scene has that"},
            solver.velocity_enough, units::millimetre_per_second, above(0, 1000));
   v.integer(Key{"max_iterations", "Largest number of iterations of one solve.", false, "200"}, solver.max_iterations,

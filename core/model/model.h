@@ -202,9 +202,8 @@ struct SolverSettings {
   /// body therefore does not matter. In (0, 1). See solver::SolverLimits.
   double tolerance = 1e-4;
   double velocity_floor = 1e-6;  ///< residuals below this velocity [m/s] count as solved, > 0
-  /// The same once a solve has made an iteration [m/s], >= 0; what is below velocity_floor changes nothing. A solve
-  /// that makes none leaves what is left of a slow motion undone for ever; one that makes some leaves it to the next
-  /// step.
+  /// Residuals below this velocity [m/s] count as solved once a solve has made an iteration, >= 0; below velocity_floor
+  /// it has no effect. A floor as high as this would leave slow motions undone for ever.
   double velocity_enough = 0;
   std::int32_t max_iterations = 200;                   ///< iterations of one solve at most, >= 1
   std::int32_t substeps = 1;                           ///< equal parts of a tick, >= 1

@@ -8,6 +8,7 @@ bool BackwardEuler::step(const State& from, const contact::HeldTools& tools, con
   contact::ImplicitContacts contacts =
       context_.contacts.detect(from, tools, {part.h, part.h, 0, part.share, pins}, contact::Linearisation::rest);
   if (context_.sleepers.wakes(contacts)) return false;
+  context_.sleepers.keep_kelvin(from, to);
   const elements::Coordinates& velocity = solve_.solve(from, part, contacts, report);
   commit_velocity(context_.elements.slabs(), context_.team, velocity, from.position, part.h, to);
   if (!check_.passes(to.velocity, report)) return false;

@@ -25,7 +25,7 @@ bool has_motion(const double* first, const double* last) {
   return any != 0;
 }
 
-/// Clears what sleeps. Only what has just fallen asleep still moves; memory is not written in vain.
+/// Stops what sleeps. Only what has just fallen asleep still moves, so most of the memory is only read.
 void stop_asleep(const parallel::Slabs& slabs, parallel::Team& team, Vec3Array& velocity) {
   slabs.for_each_asleep(team, [&](int slab) {
     for (const auto axis : kAxes) {

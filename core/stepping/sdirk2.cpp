@@ -91,6 +91,7 @@ bool Sdirk2::step(const State& from, const contact::HeldTools& tools, const Subs
   to.acceleration.resize(from.position.size());
   const StepStatus before = report.status;
   for (Motion* motion : {&predicted_, &second_start_}) context_.sleepers.keep(from, *motion);
+  context_.sleepers.keep_kelvin(from, to);
   if (is_short(from, tools, part) && two_stages(from, tools, part, to, report)) {
     find_slope(context_, second_start_.velocity, to.velocity, kStage * part.h, to.acceleration);
     return true;

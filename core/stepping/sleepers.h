@@ -39,9 +39,9 @@ class Sleepers {
   bool has_woken() const { return has_woken_; }
   void resume() { has_woken_ = false; }
 
-  /// Writes what sleeps to `to`, as it is in `from` and without motion.
+  /// Writes what sleeps to `to`, as it is in `from` and without motion: for a Motion in which contacts are looked for.
   void keep(const State& from, Motion& to) const;
-  /// Writes its Kelvin elongations alone.
+  /// Writes its Kelvin elongations alone, which is enough for a Motion that is committed.
   void keep_kelvin(const State& from, Motion& to) const {
     if (!elements_.slabs().asleep().empty()) to.kelvin_elongation = from.kelvin_elongation;
   }

@@ -133,7 +133,6 @@ bool Stepper::Parts::advance(const State& from, const contact::HeldTools& tools,
   const StepReport before = report;
   sleepers.begin(from, tools, part);
   for (;;) {
-    sleepers.keep_kelvin(from, next);
     const bool is_done = std::visit(
         [&]<class Method>(Method& method) {
           if constexpr (std::is_same_v<Method, std::monostate>)

@@ -155,11 +155,15 @@ struct PressErrors {
   double position = 0;  ///< of any sphere [m]
 };
 
+Model solved_to_rounding(Model model) {
+  model.solver.tolerance = 1e-9, model.solver.velocity_floor = 1e-15, model.solver.velocity_enough = 0;
+  model.solver.max_iterations = 5000;
+  return model;
+}
+
 /// Repeats `ticks` ticks of a press on a block of n layers, and compares every tenth.
 PressErrors errors_of_press(const Model& model, int threads, int n, std::int64_t ticks) {
-  Model exact = model;
-  exact.solver.tolerance = 1e-9, exact.solver.velocity_floor = 1e-15, exact.solver.velocity_enough = 0,
-  exact.solver.max_iterations = 5000;
+  const Model exact = solved_to_rounding(model);
   stepping::Stepper stepper(model, {.threads = threads}), to_rounding(exact);
   State state = rest_state(model);
   std::vector<double> forces, misses;
@@ -234,9 +238,7 @@ Model row_of_organs(int n, int organs, double sleep_bound) {
 void organs(benchmark::State& run, double sleep_bound) {
   const int n = edge_of(run.range(0)), count = int(run.range(1)), threads = int(run.range(2));
   const Model model = row_of_organs(n, count, sleep_bound);
-  Model all_awake = row_of_organs(n, count, 0);
-  all_awake.solver.tolerance = 1e-9, all_awake.solver.velocity_floor = 1e-15, all_awake.solver.velocity_enough = 0,
-  all_awake.solver.max_iterations = 5000;
+  const Model all_awake = solved_to_rounding(row_of_organs(n, count, 0));
   stepping::Stepper stepper(model, {.threads = threads}), whole(all_awake, {.threads = threads});
   const auto until_all_sleep = [](stepping::Stepper& of, const Model& its) {
     State state = rest_state(its);

@@ -54,7 +54,7 @@ Reach ball_at(int tick) {
   return reach;
 }
 
-/// The tick from which the tissue is where it is: for a third of the time it stands still while the ball moves.
+/// The last tick in which the tissue moved: for a third of the time it stands still while the ball moves on.
 int last_move(int tick) { return std::min(tick, tick - tick % 300 + 199); }
 
 void expect_nothing_left_out(const Model& model, State state, bool is_cut) {

@@ -37,7 +37,7 @@ TEST(SameScene, ADifferenceIsNamedAndLooksMayDiffer) {
   EXPECT_NE(reason("c.ctpm", softer).find("differs in axial.k"), std::string::npos);
   EXPECT_NE(reason("d.ctpm", larger).find("36 spheres instead of 27"), std::string::npos);
   EXPECT_NE(reason("e.ctpm", other_tool).find("its tools are fist"), std::string::npos);
-  // Of the time before scenes had a say in it.
+  // One of the two is from before that setting.
   recordings::SessionStart less_exact = start;
   less_exact.model.solver.velocity_enough = 2e-6;
   EXPECT_EQ(reason("g.ctpm", less_exact), "");
