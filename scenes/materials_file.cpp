@@ -1,11 +1,15 @@
 #include "scenes/materials_file.h"
 
+#include <algorithm>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "scenes/field_reader.h"
+#include "scenes/field_writer.h"
 #include "scenes/json_text.h"
 #include "scenes/presets.h"
+#include "scenes/rewrite_json.h"
 #include "scenes/scene_keys.h"
 #include "scenes/scene_rules.h"
 
@@ -46,11 +50,36 @@ Result<std::vector<NamedMaterial>> read_materials(std::string_view text, const s
     const std::string at = "/materials/" + std::to_string(i), &name = file.materials[i].name;
     check_material(problems, at, file.materials[i].material);
     if (!problems.is_good(at + "/name")) continue;
-    if (find_preset(name) != nullptr || !seen.insert(name).second)
+    if (find_preset(name) != nullptr)
+      problems.add_rule(at + "/name", "got " + in_quotes(name) + ", which is a preset of the program");
+    else if (!seen.insert(name).second)
       problems.add_rule(at + "/name", "got " + in_quotes(name) + ", which is taken already");
   }
   if (!problems.is_empty()) return problems.errors();
   return file.materials;
+}
+
+Result<std::string> with_material(const std::string& text, const std::string& file_name,
+                                  const NamedMaterial& material) {
+  MaterialsFile before, after;
+  if (!text.empty()) {
+    Result<std::vector<NamedMaterial>> read = read_materials(text, file_name);
+    if (!read) return read.errors();
+    before.materials = *std::move(read);
+  }
+  after = before;
+  const auto own = std::find_if(after.materials.begin(), after.materials.end(),
+                                [&](const NamedMaterial& one) { return one.name == material.name; });
+  if (own != after.materials.end())
+    *own = material;
+  else
+    after.materials.push_back(material);
+  const std::string new_text = FieldWriter::record_text(after, 0) + "\n";
+  const std::optional<std::string> changed =
+      text.empty() ? std::nullopt : rewrite_json(text, FieldWriter::record_text(before, 0) + "\n", new_text);
+  for (const std::string& candidate : {changed.value_or(""), new_text})
+    if (const auto read = read_materials(candidate, file_name); read && *read == after.materials) return candidate;
+  return read_materials(new_text, file_name).errors();
 }
 
 }  // namespace ctpm::scenes

@@ -27,7 +27,7 @@ Tissue tissue_of(const scenes::NamedMaterial& own) {
 
 /// The author's materials in a folder; none if there is no such file.
 Result<std::vector<scenes::NamedMaterial>> own_materials(const std::string& folder) {
-  const std::string path = (std::filesystem::path(folder) / kMaterialsFile).string();
+  const std::string path = (std::filesystem::path(folder) / scenes::kMaterialsFile).string();
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return std::vector<scenes::NamedMaterial>{};
   const Result<std::string> text = output::read_text_file(path);
@@ -48,9 +48,9 @@ Result<Tissue> choose_tissue(const std::string& folder, const std::string& name,
     std::string known;
     for (const scenes::NamedMaterial& material : *own) known += (known.empty() ? "" : ", ") + material.name;
     for (const std::string& preset : scenes::preset_names()) known += (known.empty() ? "" : ", ") + preset;
-    return Error{
-        output::option_name("import.organ"), "there is no preset '" + name + "'",
-        "known: " + known + "; own materials belong into " + std::string(kMaterialsFile) + " in the scene's folder"};
+    return Error{output::option_name("import.organ"), "there is no preset '" + name + "'",
+                 "known: " + known + "; own materials belong into " + std::string(scenes::kMaterialsFile) +
+                     " in the scene's folder"};
   }
   for (const std::string& hint : hints) {
     for (const scenes::NamedMaterial& material : *own)

@@ -20,9 +20,6 @@ struct Tissue {
   importers::UsualSize usual_size() const { return {preset->usual_size_least, preset->usual_size_most}; }
 };
 
-/// File of own materials beside a scene, in its folder.
-inline constexpr const char* kMaterialsFile = "materials.json";
-
 /// The tissue `name`, of the author's materials in `folder` or a preset. If it is empty: the first that one of `hints`
 /// contains, else soft tissue of no named organ. Errors: no such tissue; a materials file that cannot be read.
 Result<Tissue> choose_tissue(const std::string& folder, const std::string& name, const std::vector<std::string>& hints);

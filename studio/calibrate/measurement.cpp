@@ -105,6 +105,11 @@ class MeasurementReader {
                            "has " + std::to_string(one.rows.size()) + (one.rows.size() == 1 ? " row" : " rows") +
                                ", must have at least " + std::to_string(kLeastRows),
                            ""});
+      double work = 0;  // of the ball, as far as it presses
+      for (const Row& row : one.rows) work += row.imposed * row.measured;
+      if (one.kind != Kind::creep && work <= 0)
+        errors_.push_back({one.name, "the forces are not above 0 N where the ball presses",
+                           "a force that pushes the ball away is above 0: turn the sign round if it is the other way"});
       // The specimen is at rest at 0 s. A force that was measured there under a press is met by no material.
       if (one.kind == Kind::relaxation && one.rows.front().time <= 0 && one.rows.front().imposed > 0)
         errors_.push_back({one.name, "is pressed at 0 s already, and the network is at rest then",

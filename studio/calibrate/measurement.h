@@ -36,7 +36,7 @@ struct Measurement {
 /// Reads measurements from CSV: the columns of one Kind in the first row, in any order, and `specimen` if there are
 /// several. Creep begins at 0 N, at time 0; the load may rise to its last value and stays there. Errors, all at once as
 /// `file:line:column`: columns that are missing, twice or unknown; values that are no finite numbers or out of range;
-/// time that does not rise; fewer than three rows of a specimen.
+/// time that does not rise; fewer than three rows of a specimen; forces that pull.
 Result<std::vector<Measurement>> read_measurements(std::string_view text, const std::string& file_name);
 
 }  // namespace ctpm::calibrate

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "scenes/materials_file.h"
 #include "studio/output/json_writer.h"
 #include "studio/output/number_text.h"
 #include "studio/reports/report.h"
@@ -178,22 +179,15 @@ std::string results_json(const Fit& fit, const std::vector<SpecimenFit>& specime
   return json.end_list().end_object().text();
 }
 
-/// The format of an author's own materials (scenes/README.md).
-std::string materials_json(const Fit& fit, const std::string& name) {
-  const scenes::MaterialSpec& m = fit.material;
-  const auto digits = [](double value) { return output::short_number(value, 6); };
-  output::JsonWriter json;
-  json.begin_object().member("format", "ctpm-materials").member("version", 1).key("materials").begin_list();
-  json.begin_object().member("name", std::string_view(name)).member("preset", std::string_view(m.preset));
-  std::string text = json.text();
-  text.pop_back();
+/// As an author's own, with the digits that a fit can have.
+scenes::NamedMaterial own_material(const Fit& fit, const std::string& name) {
+  const auto rounded = [](double modulus) { return std::stod(output::short_number(modulus, 6)); };
+  scenes::MaterialSpec material;
+  material.preset = fit.material.preset, material.calibration_ball = fit.material.calibration_ball;
   const Parameters& p = fit.parameters;
-  for (const auto& [key, value] :
-       {std::pair("spring_kpa_per_mm", p.spring()), std::pair("kelvin_kpa_per_mm", p.kelvin()),
-        std::pair("constraint_kpa_per_mm", p.prime()), std::pair("viscosity_kpa_s_per_mm", p.viscosity())})
-    text += ",\n      \"" + std::string(key) + "\": " + digits(value);
-  if (m.calibration_ball) text += ",\n      \"calibration_ball_radius_mm\": " + digits(1e3 * *m.calibration_ball);
-  return text + "\n    }\n  ]\n}\n";
+  material.spring = rounded(1e6 * p.spring()), material.kelvin = rounded(1e6 * p.kelvin());
+  material.constraint = rounded(1e6 * p.prime()), material.viscosity = rounded(1e6 * p.viscosity());
+  return {name, material};
 }
 
 }  // namespace
@@ -231,10 +225,13 @@ std::vector<std::string> remarks_of(const Fit& fit, const std::vector<SpecimenFi
   return remarks;
 }
 
-Result<Done> write_calibration(const Fit& fit, const std::vector<SpecimenFit>& specimens, const std::string& name,
-                               const std::string& start_name, const std::string& folder) {
+Result<Done> write_calibration(const Fit& fit, const std::vector<SpecimenFit>& specimens, const MaterialName& name,
+                               const std::string& folder) {
+  const Result<std::string> materials =
+      scenes::with_material(name.beside, scenes::kMaterialsFile, own_material(fit, name.name));
+  if (!materials) return materials.errors();
   if (Result<Done> ready = reports::prepare_folder(folder); !ready) return ready;
-  reports::Report report("Material " + name,
+  reports::Report report("Material " + name.name,
                          "Fitted to " + std::to_string(fit.matches.size()) +
                              " measurements, each simulated in the network on " +
                              (fit.block ? "a block of the specimen's size." : "the paper's rig of five spheres."));
@@ -251,11 +248,11 @@ Result<Done> write_calibration(const Fit& fit, const std::vector<SpecimenFit>& s
   if (!specimens.empty()) report.add_table(specimen_table(specimens, fit.estimates));
   if (!is_whole)
     report.add_paragraph("materials.json needs every modulus: what the data cannot tell follows there from " +
-                         start_name + ".");
+                         name.start_name + ".");
   for (const Match& match : fit.matches) report.add_plots(plots_of(match));
   report.add_table(correlation_table(fit));
   return reports::write_report(folder, {{"results.json", results_json(fit, specimens)},
-                                        {"materials.json", materials_json(fit, name)},
+                                        {scenes::kMaterialsFile, *materials},
                                         {"report.html", report.html()}});
 }
 

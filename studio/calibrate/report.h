@@ -16,10 +16,16 @@ std::string interval_text(const Estimate& estimate);
 /// What a reader must know to believe a fit, one sentence each. `specimens`: of fit_specimens().
 std::vector<std::string> remarks_of(const Fit& fit, const std::vector<SpecimenFit>& specimens);
 
-/// Writes report.html, results.json and materials.json, which an import in that folder takes by `name`, to `folder`,
-/// which is made if missing. `start_name`: whose values stand in for what the data cannot tell. Error: a file cannot be
+/// How a fitted material is called.
+struct MaterialName {
+  std::string name;        ///< by which an import takes it
+  std::string start_name;  ///< of the preset whose values stand in for what the data cannot tell
+  std::string beside;      ///< text of the folder's materials.json so far, whose others stay; empty: there is none
+};
+
+/// Writes report.html, results.json and materials.json to `folder`, which is made if missing. Error: a file cannot be
 /// written.
-Result<Done> write_calibration(const Fit& fit, const std::vector<SpecimenFit>& specimens, const std::string& name,
-                               const std::string& start_name, const std::string& folder);
+Result<Done> write_calibration(const Fit& fit, const std::vector<SpecimenFit>& specimens, const MaterialName& name,
+                               const std::string& folder);
 
 }  // namespace ctpm::calibrate

@@ -1,11 +1,14 @@
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "core/model/errors.h"
+#include "scenes/materials_file.h"
 #include "scenes/presets.h"
 #include "studio/calibrate/block.h"
 #include "studio/calibrate/report.h"
@@ -24,12 +27,19 @@ struct CalibrateArguments {
   std::optional<double> ball_mm, sphere_mm;
   std::vector<double> specimen_mm;  ///< x, y, z; empty: the rig stands for the specimen
   int starts = 5;
+  bool overwrite = false;
 };
 
 Result<std::vector<calibrate::Measurement>> read_all(const std::vector<std::string>& files) {
   std::vector<calibrate::Measurement> all;
   Errors errors;
+  std::set<std::filesystem::path> seen;
   for (const std::string& file : files) {
+    std::error_code ignored;
+    if (!seen.insert(std::filesystem::weakly_canonical(file, ignored)).second) {
+      errors.push_back({file, "is the same file as another one that is named", "name it once"});
+      continue;
+    }
     const Result<std::string> text = output::read_text_file(file);
     const Result<std::vector<calibrate::Measurement>> read =
         text ? calibrate::read_measurements(*text, file) : text.errors();
@@ -79,12 +89,37 @@ std::optional<loading::LoadedScene> block_of(const CalibrateArguments& arguments
   return {};
 }
 
+/// The text of the materials that are in the folder and stay there; empty if there are none. Adds what is wrong with
+/// them, or with the name among them.
+std::string materials_beside(const CalibrateArguments& arguments, Errors& errors) {
+  if (scenes::find_preset(arguments.name) != nullptr || arguments.name.empty()) {
+    errors.push_back({"--name", arguments.name.empty() ? "is empty" : arguments.name + " is a preset of the program",
+                      "give the material a name of its own"});
+    return "";
+  }
+  const std::string path = (std::filesystem::path(arguments.folder) / scenes::kMaterialsFile).string();
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return "";
+  const Result<std::string> text = output::read_text_file(path);
+  const Result<std::vector<scenes::NamedMaterial>> materials =
+      text ? scenes::read_materials(*text, path) : text.errors();
+  append(errors, materials);
+  if (!materials) return "";
+  const bool is_taken =
+      std::ranges::any_of(*materials, [&](const scenes::NamedMaterial& one) { return one.name == arguments.name; });
+  if (is_taken && !arguments.overwrite)
+    errors.push_back({path, "has a material " + arguments.name + " already",
+                      "give another name with --name, or replace it with --overwrite"});
+  return *text;
+}
+
 int run_calibrate(const CalibrateArguments& arguments) {
   const Result<std::vector<calibrate::Measurement>> measurements = read_all(arguments.files);
   Errors errors;
   append(errors, measurements);
   const std::optional<loading::LoadedScene> block = block_of(arguments, errors);
   append(errors, reports::check_folder(arguments.folder));
+  const std::string materials = materials_beside(arguments, errors);
   if (!errors.empty()) return print_errors(errors);
   const Result<loading::LoadedScene> rig = loading::load_whole_scene(kScenes + "/paper/rig-liver.json");
   if (!rig) return print_errors(rig.errors());
@@ -107,8 +142,8 @@ int run_calibrate(const CalibrateArguments& arguments) {
   const Result<std::vector<calibrate::SpecimenFit>> specimens =
       calibrate::fit_specimens(block ? *block : *rig, *measurements, *fit, request);
   if (!specimens) return print_errors(specimens.errors());
-  if (const Result<Done> written =
-          calibrate::write_calibration(*fit, *specimens, arguments.name, arguments.preset, arguments.folder);
+  if (const Result<Done> written = calibrate::write_calibration(
+          *fit, *specimens, {arguments.name, arguments.preset, materials}, arguments.folder);
       !written)
     return print_errors(written.errors());
   print_fit(*fit, *specimens);
@@ -126,7 +161,8 @@ Command add_calibrate(CLI::App& program) {
       "Columns: depth_mm, force_n of a slow indentation; time_s, depth_mm, force_n of a relaxation;\n"
       "time_s, load_n, depth_mm of creep; specimen beside them where a file holds several.");
   app->add_option("data", arguments->files, "Measurements (.csv)")->required();
-  app->add_option("-o,--output", arguments->folder, "Folder for report.html, results.json and materials.json")
+  app->add_option("-o,--output", arguments->folder,
+                  "Folder for report.html, results.json and materials.json, whose other materials stay")
       ->required();
   app->add_option("--name", arguments->name, "Name of the material")->capture_default_str();
   app->add_option("--preset", arguments->preset, "Where the fit starts, and where what the data cannot tell comes from")
@@ -141,6 +177,7 @@ Command add_calibrate(CLI::App& program) {
   app->add_option("--sphere-radius-mm", arguments->sphere_mm,
                   "Of the spheres in the specimen; the preset's if not given")
       ->check(CLI::Range(0.1, 100.0));
+  app->add_flag("--overwrite", arguments->overwrite, "Replace a material of that name in the folder's materials.json");
   app->add_option("--starts", arguments->starts, "Starts of the fit")->check(CLI::Range(1, 100))->capture_default_str();
   return {app, [arguments] { return run_calibrate(*arguments); }};
 }

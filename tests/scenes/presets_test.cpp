@@ -118,8 +118,43 @@ TEST(Materials, AnAuthorsOwnAreReadAndEveryMistakeIsPlaced) {
   ASSERT_FALSE(bad);
   std::string all;
   for (const Error& error : bad.errors()) all += to_string(error) + "\n";
-  for (const char* part : {"which is taken already", "spring_kpa_per_mm", "there is no preset", "m.json:1:"})
+  for (const char* part : {"which is a preset of the program", "spring_kpa_per_mm", "there is no preset", "m.json:1:"})
     EXPECT_NE(all.find(part), std::string::npos) << part << " in\n" << all;
+}
+
+TEST(Materials, OneIsAddedOrReplacedAndTheOthersStayAsTheyAreWritten) {
+  scenes::NamedMaterial gel;
+  gel.name = "gel", gel.material.preset = "liver", gel.material.spring = 16e6;
+  const auto first = scenes::with_material("", "m.json", gel);
+  ASSERT_TRUE(first) << to_string(first.errors().front());
+  const auto read = scenes::read_materials(*first, "m.json");
+  ASSERT_TRUE(read) << to_string(read.errors().front());
+  EXPECT_EQ(*read, std::vector{gel});
+
+  const std::string own = R"({"format": "ctpm-materials", "version": 1, "materials": [
+  // measured in May
+  {"name": "cyst",   "preset": "kidney", "density_kg_per_m3": 1010}
+]}
+)";
+  const auto both = scenes::with_material(own, "m.json", gel);
+  ASSERT_TRUE(both) << to_string(both.errors().front());
+  for (const char* part :
+       {"// measured in May", R"({"name": "cyst",   "preset": "kidney", "density_kg_per_m3": 1010})"})
+    EXPECT_NE(both->find(part), std::string::npos) << part << " in\n" << *both;
+  gel.material.spring = 20e6;
+  const auto again = scenes::with_material(*both, "m.json", gel);
+  ASSERT_TRUE(again) << to_string(again.errors().front());
+  EXPECT_NE(again->find("// measured in May"), std::string::npos) << *again;
+  const auto all = scenes::read_materials(*again, "m.json");
+  ASSERT_TRUE(all) << to_string(all.errors().front());
+  ASSERT_EQ(all->size(), 2u);
+  EXPECT_EQ(all->front().name, "cyst");
+  EXPECT_EQ(all->front().material.density, 1010);
+  EXPECT_EQ(all->back(), gel);
+
+  gel.name = "kidney";
+  EXPECT_FALSE(scenes::with_material(own, "m.json", gel)) << "a preset";
+  EXPECT_FALSE(scenes::with_material("{", "m.json", gel)) << "no JSON";
 }
 
 TEST(ResolveMaterial, OwnValuesTakeThePresetsPlace) {

@@ -338,6 +338,11 @@ TEST(Measurements, SayAllMistakesWithTheirPlaces) {
   EXPECT_NE(all("time_s,depth_mm,force_n\n0,6,1.4\n1,6,1.3\n2,6,1.2\n").find("a.csv: error: is pressed at 0 s already"),
             std::string::npos);
   EXPECT_EQ(all("time_s,depth_mm,force_n\n0,0,0\n0.1,6,1.3\n2,6,1.2\n"), "");
+  for (const char* pulling :
+       {"depth_mm,force_n\n1,-0.1\n2,-0.3\n3,-0.5\n", "time_s,depth_mm,force_n\n0,0,0\n0.1,6,-1.3\n2,6,-1.2\n"})
+    EXPECT_NE(all(pulling).find("a.csv: error: the forces are not above 0 N where the ball presses"), std::string::npos)
+        << all(pulling);
+  EXPECT_EQ(all("time_s,depth_mm,force_n\n0,0,-0.01\n0.1,6,1.3\n2,6,1.2\n"), "") << "a load cell's zero drifts";
   EXPECT_EQ(all("depth_mm;force_n\n1,0;0,2\n"),
             "a.csv:1:1: error: semicolons or tabs part the values (save it with commas between the values, and points "
             "in the numbers)\n");
@@ -356,6 +361,22 @@ TEST(CalibrateProgram, MakesOfThePapersTableAMaterialThatAnImportTakes) {
   EXPECT_EQ(materials->front().name, "mine");
   const Parameters fitted = parameters_of(materials->front().material);
   EXPECT_NEAR(fitted.ratio, parameters_of(liver()).ratio, 1e-4);
+  const auto taken =
+      testing::run_ctpm({"calibrate", "table.csv", "./table.csv", "-o", "out", "--name", "mine"}, folder.path());
+  EXPECT_EQ(taken.code, 2);
+  EXPECT_NE(taken.err.find("materials.json: error: has a material mine already"), std::string::npos) << taken.err;
+  EXPECT_NE(taken.err.find("./table.csv: error: is the same file as another one"), std::string::npos) << taken.err;
+  const auto preset = testing::run_ctpm({"calibrate", "table.csv", "-o", "out", "--name", "liver"}, folder.path());
+  EXPECT_EQ(preset.code, 2);
+  EXPECT_NE(preset.err.find("--name: error: liver is a preset"), std::string::npos) << preset.err;
+  const auto second =
+      testing::run_ctpm({"calibrate", "table.csv", "-o", "out", "--name", "other", "--starts", "1"}, folder.path());
+  ASSERT_EQ(second.code, 0) << second.err;
+  const auto both = scenes::read_materials(testing::slurp(folder.path() / "out" / "materials.json"), "materials.json");
+  ASSERT_TRUE(both) << to_string(both.errors().front());
+  ASSERT_EQ(both->size(), 2u);
+  EXPECT_EQ(both->front(), materials->front()) << "stays";
+  EXPECT_EQ(both->back().name, "other");
   const std::string page = testing::slurp(folder.path() / "out" / "report.html");
   for (const char* part : {"residuals: network less measured", "cannot be told", "Correlation of what was fitted",
                            "At worst the network gives"})
