@@ -151,7 +151,7 @@ OrganPainter::Order OrganPainter::sort_triangles(const Organ& organ, const DrawO
   const std::vector<Vec3>& p = organ.mesh.positions();
   const std::size_t outer = cut_of(organ).outer_triangle_count();
   // Layers of glass keep their order.
-  const bool is_glassy = options.view == View::both, needs_averted = !is_glassy && options.cutaway.is_on();
+  const bool is_glassy = options.view == View::both, needs_averted = options.cutaway.is_on();
   indices_.clear(), near_cut_.clear(), averted_.clear();
   const auto add = [&](std::vector<std::uint32_t>& list, const std::array<std::int32_t, 3>& t) {
     for (const std::int32_t v : t) list.push_back(std::uint32_t(v));
@@ -190,9 +190,14 @@ void OrganPainter::draw(const Gl& gl, const SceneView& scene, const DrawOptions&
     // Triangles that face the eye come first, because they hide most of the rest. Surface and walls are watertight:
     // nobody sees an inner face.
     set_look(outside, scene.looks[i], options);
-    if (glassy) outside.set("blood", scene.looks[i].blood);
+    if (glassy) {
+      // Where it is cut away, one looks at the far side's inner face, through nothing or the near side.
+      outside.set("blood", scene.looks[i].blood);
+      draw_indices(order.outside + order.near_cut + order.wall, order.averted);
+      draw_indices(0, order.outside);
+      continue;
+    }
     draw_indices(0, order.outside);
-    if (glassy) continue;
     if (order.near_cut > 0) {
       const Program& near_cut = program(OrganPass::near_cut, options);
       set_look(near_cut, scene.looks[i], options);

@@ -29,7 +29,7 @@ void draw_panel(cv::Mat& rgb, const PixelBox& box, const Ink& tint, int opacity,
 
 /// How much of a panel is shown: less the nearer the tools are, so that they are never hidden.
 double share_shown(const PixelBox& box, const std::vector<Pixel>& tools, double reach) {
-  constexpr double kLeast = 0.12;
+  constexpr double kLeast = 0.45;  // words are still read, and the tool is seen
   double nearest = reach * reach;
   for (const Pixel& p : tools) {
     const double x = std::max({box.x - p.x, p.x - box.x - box.width, 0.0}),

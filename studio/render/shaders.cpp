@@ -247,7 +247,7 @@ void main() {
   float mirrored_rim = slow.mirror.y + 1.1 * to_eye * slow.mirror.z;
   c += fresnel(facing) * (kFilm * slow.film + slow.turn.w * (key_in_room(mirrored_key) + rim_in_room(mirrored_rim)));
 #ifdef GLASSY
-  float edge = 1.0 - clamp(facing, 0.0, 1.0), cover = mix(0.4, 0.9, edge * edge);
+  float edge = 1.0 - clamp(abs(facing), 0.0, 1.0), cover = mix(0.4, 0.9, edge * edge);
   colour = vec4(cover * to_srgb(c + 0.3 * edge * edge * edge * edge), cover);
 #else
   colour = vec4(to_srgb(c), 1.0);
