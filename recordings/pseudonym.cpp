@@ -37,6 +37,17 @@ Result<Done> write_new(const std::string& path, const std::vector<unsigned char>
   return Error{path, "cannot be written", ""};
 }
 
+/// What of others' a file is rather than a key, in words; empty: it may be one. A new key's bytes may be any.
+std::string kind_of(const std::vector<unsigned char>& bytes) {
+  if (bytes.size() == key_size) return "";
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (text.starts_with("SQLite format 3")) return "a session";
+  if (text.starts_with("-----BEGIN PUBLIC KEY")) return "the public key of signatures";
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first != std::string_view::npos && (text[first] == '{' || text.substr(first).starts_with("//"))) return "JSON";
+  return "";
+}
+
 const Error missing{"", "this build has no keyed hash, which pseudonyms are made of", "build with CTPM_SIGNING=ON"};
 
 }  // namespace
@@ -61,6 +72,9 @@ Result<PseudonymKey> PseudonymKey::read_or_make(const std::string& path, bool& i
   std::vector<unsigned char> bytes;
   for (std::istreambuf_iterator<char> at(in), end; at != end && bytes.size() <= largest_key; ++at)
     bytes.push_back(static_cast<unsigned char>(*at));
+  if (const std::string kind = kind_of(bytes); !kind.empty())
+    return Error{path, "is no key but " + kind + ", which others may have: they could test whose pseudonym it is",
+                 "a file that does not exist is made, with a new key"};
   if (!in || bytes.size() < key_size || bytes.size() > largest_key)
     return Error{path, "is no key: it must hold 32 to 65536 bytes",
                  "a file that does not exist is made, with a new key"};

@@ -16,7 +16,8 @@ class PseudonymKey {
   /// A key that nobody keeps: pseudonyms of another run differ. Error: this build has no keyed hash (CTPM_SIGNING).
   static Result<PseudonymKey> make();
   /// The key in a file. A missing file is made, with a new key that its owner alone can read; `is_new` then becomes
-  /// true. Errors: the file cannot be read or made, or holds fewer than 32 bytes; this build has no keyed hash.
+  /// true. Errors: the file cannot be read or made, holds fewer than 32 bytes, or is what others may have: JSON, a
+  /// session, a public key; this build has no keyed hash.
   static Result<PseudonymKey> read_or_make(const std::string& path, bool& is_new);
 
   /// Hexadecimal digits, at most 64, for a text of a kind: the same text of another kind has others.

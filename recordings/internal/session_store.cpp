@@ -69,7 +69,8 @@ Result<bool> check_file(const std::string& path, bool salvage) {
   if (got == 0) return Error{path, "is not a session file: it is empty", ""};
   static constexpr char magic[16] = "SQLite format 3";
   if (got < 16 || std::memcmp(header, magic, sizeof magic) != 0)
-    return Error{path, "is not a session file: it does not begin like one", ""};
+    return Error{path, "is not a session file: it does not begin like one",
+                 path.ends_with(".ctpm") ? "if it was one, try to recover it" : ""};
   if (got < static_cast<ssize_t>(sizeof header))
     return Error{path, "is cut short: " + std::to_string(got) + " bytes are left", "try to recover it"};
 
@@ -216,8 +217,9 @@ Result<Done> SessionStore::for_each_row(const std::function<void(const std::stri
 Result<Done> SessionStore::check_container() {
   auto statement = database_.prepare("PRAGMA integrity_check(1)");
   if (!statement || statement->step() != Statement::Outcome::row) return database_error("its pages cannot be checked");
-  if (const std::string found = statement->text(0); found != "ok") return error("is damaged: " + found);
-  return Done{};
+  const std::string found = statement->text(0);  // a line of its own names the database
+  if (found == "ok") return Done{};
+  return Error{database_.path(), "is damaged: " + found.substr(found.rfind('\n') + 1), "try to recover it"};
 }
 
 /// Runs `fill(reader, problem)` over a field set.

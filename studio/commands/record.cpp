@@ -26,12 +26,14 @@
 namespace ctpm::commands {
 namespace {
 
+constexpr double kMostSeconds = 1e6;  // of a session
+
 struct RecordArguments {
   std::string scene, parent, output;
   std::optional<double> at_s;
   SourceRequest source;
   std::vector<std::string> device_flags;  ///< that were given
-  double duration_s = 0;
+  std::optional<double> duration_s;
   bool overwrite = false, as_fast_as_possible = false;
   scenes::LoadOptions load;
   int threads = 0;  ///< 0: threads_for()
@@ -40,7 +42,8 @@ struct RecordArguments {
 /// Errors in the combination of flags, before any file is read.
 Errors check(const RecordArguments& arguments) {
   Errors errors;
-  if (!(arguments.duration_s >= 0)) errors.push_back({"--duration-s", "must be 0 or more", ""});
+  if (arguments.duration_s && !(*arguments.duration_s > 0 && *arguments.duration_s <= kMostSeconds))
+    errors.push_back({"--duration-s", "must be above 0 and at most " + std::to_string(int(kMostSeconds)), ""});
   if (arguments.scene.empty() == arguments.parent.empty())
     errors.push_back({"record", "needs either a scene or --continue with a session", ""});
   if (arguments.at_s && arguments.parent.empty())
@@ -185,7 +188,8 @@ int run_record(RecordArguments arguments) {
 
   session::RunOptions options;
   options.in_real_time = !arguments.as_fast_as_possible;
-  options.most_ticks = std::llround(arguments.duration_s / start.model.tick);
+  if (arguments.duration_s)
+    options.most_ticks = std::max<std::int64_t>(1, std::llround(*arguments.duration_s / start.model.tick));
   options.should_stop = should_stop;
   options.threads = arguments.threads > 0 ? arguments.threads : session::threads_for(start.model);
   session::TickTimes all_times(start.model);
@@ -212,8 +216,10 @@ int run_record(RecordArguments arguments) {
   }();
   if (!outcome) return print_errors(outcome.errors());
   // A session that was ended before its script says nothing about the rest of it.
-  if (!arguments.source.script.empty() && took_tool && options.most_ticks == 0 && !stop.came())
-    print_warnings(find_misses(outcome->statistics, took_blade, arguments.source.script));
+  const std::string& motion = arguments.source.motion;
+  const std::string& planned = motion.empty() ? arguments.source.script : motion;
+  if (!planned.empty() && took_tool && options.most_ticks == 0 && !stop.came())
+    print_warnings(find_misses(outcome->statistics, took_blade, planned));
   return print_outcome(arguments.output, start.model, *outcome, all_times);
 }
 

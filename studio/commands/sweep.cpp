@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,11 +34,33 @@ struct SweepArguments {
   sweep::SlurmRequest slurm;
 };
 
+/// What is wrong with the words of a command before any session is looked at.
+Errors errors_of(const std::vector<std::string>& command) {
+  Errors errors;
+  for (const std::string& word : command) {
+    std::error_code ignored;
+    if (word.ends_with(".ctpm") && !word.starts_with("{") && !std::filesystem::exists(word, ignored))
+      errors.push_back({word, "does not exist", "the --each command names it"});
+  }
+  CLI::App program;
+  add_verify(program), add_info(program), add_export(program), add_compare(program);
+  std::vector<std::string> words(command.rbegin(), command.rend());  // as CLI11 takes them
+  try {
+    program.parse(words);
+  } catch (const CLI::ParseError& error) {
+    errors.push_back({"--each", error.what(), "ctpm " + command.front() + " --help says what it takes"});
+  }
+  return errors;
+}
+
 Result<sweep::Plan> make_plan(const SweepArguments& arguments) {
   if (arguments.each) {
     const std::vector<std::string> command = CLI::detail::split_up(*arguments.each);
     if (command.empty()) return Error{"--each", "needs a command", "one of compare, export, info, verify"};
-    return sweep::plan_each(command, arguments.files);
+    Result<sweep::Plan> plan = sweep::plan_each(command, arguments.files);
+    if (!plan) return plan;
+    if (const Errors errors = errors_of(plan->command); !errors.empty()) return errors;
+    return plan;
   }
   if (arguments.files.size() != 1) return Error{"sweep plan", "takes one sweep file", "--each COMMAND takes sessions"};
   Result<sweep::Sweep> sweep = sweep::Sweep::load(arguments.files.front());

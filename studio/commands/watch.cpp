@@ -9,10 +9,12 @@
 #include <thread>
 #include <vector>
 
+#include "core/model/errors.h"
 #include "scenes/scene_file.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
 #include "studio/commands/stop_signal.h"
+#include "studio/output/files.h"
 
 namespace ctpm::commands {
 namespace {
@@ -79,8 +81,12 @@ void look_at_scene(const WatchArguments& arguments) {
 
 int run_watch(const WatchArguments& arguments) {
   constexpr auto kEvery = std::chrono::milliseconds(200);
-  if (stamp_of(arguments.scene).second == 0)
-    return print_errors({{arguments.scene, "does not exist, or is empty", ""}});
+  Errors errors;
+  std::vector<std::string> files = arguments.scripts;
+  files.insert(files.begin(), arguments.scene);
+  for (const std::string& file : files) append(errors, output::check_readable(file));
+  if (!arguments.preview.empty()) append(errors, output::check_writable(arguments.preview));
+  if (!errors.empty()) return print_errors(errors);
   const StopSignal stop;
   std::map<std::string, Stamp> seen;
   while (!stop.came()) {

@@ -66,10 +66,8 @@ void add_measures(const std::string& file, TaskResult& result) {
       result.values.emplace_back(measure["key"], measure["trainee"].get<double>());
 }
 
-/// The last line that says something: where the words of a command are wrong, one that points to its help follows.
-std::string last_line(std::string text) {
-  const std::size_t help = text.rfind("Run with " + option_word("help"));
-  if (help != std::string::npos && help > 0) text.resize(help);
+/// The last line that says something.
+std::string last_line(const std::string& text) {
   const std::size_t end = text.find_last_not_of('\n');
   if (end == std::string::npos) return "";
   const std::size_t before = text.rfind('\n', end);

@@ -149,7 +149,8 @@ TEST(Damage, WhatIsNotASessionIsSaidPlainly) {
   write_bytes(path, {});
   EXPECT_EQ(message(), path + ": error: is not a session file: it is empty");
   write_bytes(path, std::vector<char>(5000, 'v'));
-  EXPECT_EQ(message(), path + ": error: is not a session file: it does not begin like one");
+  EXPECT_EQ(message(),
+            path + ": error: is not a session file: it does not begin like one (if it was one, try to recover it)");
   std::filesystem::remove(path);
   std::filesystem::create_directory(path);
   EXPECT_EQ(message(), path + ": error: is not a session file: it is not a regular file");

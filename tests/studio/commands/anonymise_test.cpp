@@ -231,6 +231,14 @@ TEST_F(Anonymise, WhatCannotBeDoneIsRefusedWholly) {
   refused = ctpm({"anonymise", "a.ctpm", "--key", "short.key", "-o", "b.ctpm"});
   EXPECT_EQ(refused.code, 2);
   EXPECT_TRUE(holds(refused.err, "short.key: error: is no key")) << refused.err;
+  std::ofstream(path("scene.json")) << "{ \"format\": \"ctpm-scene\", \"version\": 1, \"organs\": [] }";
+  std::ofstream(path("public.key")) << "-----BEGIN PUBLIC KEY-----\nMCowBQYDK2VwAyEA\n-----END PUBLIC KEY-----\n";
+  for (const auto& [file, kind] :
+       {std::pair("scene.json", "JSON"), std::pair("public.key", "the public key"), std::pair("a.ctpm", "a session")}) {
+    refused = ctpm({"anonymise", "a.ctpm", "--key", file, "-o", "b.ctpm"});
+    EXPECT_EQ(refused.code, 2) << file;
+    EXPECT_TRUE(holds(refused.err, std::string(file) + ": error: is no key but " + kind)) << refused.err;
+  }
   refused = ctpm({"anonymise", "a.ctpm", "a.ctpm", "-o", "twice/"});
   EXPECT_EQ(refused.code, 2);
   EXPECT_TRUE(holds(refused.err, "is the same session as another")) << refused.err;

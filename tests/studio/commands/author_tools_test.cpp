@@ -234,5 +234,11 @@ TEST_F(AuthorTools, WatchLooksAgainWhenAFileIsSaved) {
   EXPECT_EQ(watching.outcome().code, 0);
 }
 
+TEST_F(AuthorTools, WatchRefusesWhatIsNotThereToWatch) {
+  const auto refused = ctpm({"watch", ".", "--script", "none.json", "--preview", "nodir/scene.png"});
+  EXPECT_EQ(refused.code, 2);
+  expect_says(refused.err, {".: error: is a folder", "none.json: error: does not exist", "nodir"});
+}
+
 }  // namespace
 }  // namespace ctpm

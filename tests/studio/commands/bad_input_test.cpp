@@ -274,6 +274,8 @@ TEST_F(BadInput, EveryPlaceIsSaidOnceAndNumbersAsTheyWereGiven) {
       0);
   const auto exported = run_ctpm({"export", "a.ctpm", "-o", "nodir/a.mp4"}, folder_.path());
   EXPECT_EQ(exported.err, "nodir/a.mp4: error: the folder nodir does not exist (create it first)\n");
+  refuse({"record", kShipped + "skin.json", "-o", "b.ctpm", "--fast", "--duration-s", "0"},
+         {"--duration-s: error: must be above 0"});
   refuse({"replay", "a.ctpm", "--from-s", "9"}, {"--from-s: got 9, the session lasts 0.1 s"});
   refuse({"preview", "none.json", "-o", "nodir/a.png", "--size", "10x"},
          {"--size: error:", "nodir", "none.json: error:"});
