@@ -16,6 +16,7 @@
 #include "importers/label_map.h"
 #include "importers/mesh.h"
 #include "importers/mesh_file.h"
+#include "importers/text.h"
 #include "importers/topology.h"
 #include "importers/volume_mesh.h"
 #include "importers/wire.h"
@@ -141,22 +142,17 @@ bool get_names(wire::Reader& reader, std::vector<std::string>& names) {
   return true;
 }
 
-/// Vertices used by triangles must be finite; others do not matter.
+/// Vertices used by triangles must be finite; others do not matter. Not counted are vertices, which readers number in
+/// their own way: of each triangle, or not.
 Errors check_vertices(const RawMesh& mesh) {
-  std::int64_t bad_count = 0, first_bad = -1;
-  std::vector<char> is_counted(mesh.vertex.size(), 0);
-  for (const Triangle& triangle : mesh.triangle)
-    for (const std::int32_t v : triangle) {
-      if (is_counted[std::size_t(v)] || is_finite(mesh.vertex[std::size_t(v)])) continue;
-      is_counted[std::size_t(v)] = 1;
-      ++bad_count;
-      if (first_bad < 0 || v < first_bad) first_bad = v;
-    }
+  const std::int64_t bad_count = std::ranges::count_if(mesh.triangle, [&](const Triangle& triangle) {
+    return std::ranges::any_of(triangle, [&](std::int32_t v) { return !is_finite(mesh.vertex[std::size_t(v)]); });
+  });
   if (bad_count == 0) return {};
   return {{mesh.path,
-           std::to_string(bad_count) + " of " + std::to_string(mesh.vertex.size()) +
-               " vertices are not finite numbers (the first is vertex " + std::to_string(first_bad + 1) + ")",
-           "export the mesh again; NaN or infinite coordinates cannot be repaired"}};
+           counted(bad_count, "triangle") + " of " + std::to_string(mesh.triangle.size()) +
+               (bad_count == 1 ? " has" : " have") + " corners whose coordinates are not finite numbers",
+           "look for nan or inf in the file; export the mesh again, they cannot be repaired"}};
 }
 
 /// Merges repeated vertices.

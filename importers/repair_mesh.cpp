@@ -18,6 +18,7 @@ constexpr double kCutShare = 0.25;     // of the diagonal: largest hole cut to r
 constexpr double kHoleShare = 0.1;     // of the diagonal: default limit of holes to fill
 constexpr double kCrackShare = 1e-3;   // of the diagonal: widest crack to close at T-junctions
 constexpr double kFlat = 1e-9;         // of the diagonal cubed: a smaller volume counts as none
+constexpr double kSheetShare = 0.95;   // of the mesh's diagonal: a hole so wide is the rim of a sheet
 constexpr double kRoundOff = 1.001;    // a limit that is written in whole millimetres still allows its hole
 constexpr double kLeastOrgan = 0.01;   // of the largest part's volume: smaller ones are no organs
 constexpr double kLeastCavity = 1e-4;  // of the volume around it
@@ -335,9 +336,14 @@ class Repair {
     };
     if (closing.too_large.empty() && closing.unfillable.empty()) return {};
     const double wide = closing.too_large.empty() ? 0 : widest(closing.too_large).diameter;
-    say(closing.too_large, "is wider than the " + mm_text(largest_hole) + " that may be filled",
-        "largest_hole_mm " + std::to_string(std::int64_t(std::ceil(1e3 * wide * kRoundOff))) +
-            " allows it to be closed by a cap; else close it in a mesh editor");
+    const std::string is_wider = "is wider than the " + mm_text(largest_hole) + " that may be filled";
+    if (wide > kSheetShare * diagonal_)
+      say(closing.too_large, is_wider + ", and as wide as the mesh: it is a sheet, which bounds no volume",
+          "give it a thickness in a mesh editor");
+    else
+      say(closing.too_large, is_wider,
+          "largest_hole_mm " + std::to_string(std::int64_t(std::ceil(1e3 * wide * kRoundOff))) +
+              " allows it to be closed by a cap; else close it in a mesh editor");
     say(closing.unfillable, "cannot be closed by triangles", "close it in a mesh editor");
     return errors;
   }

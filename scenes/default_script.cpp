@@ -161,10 +161,12 @@ Script organ_script(const SceneSpec& scene, std::span<const FilledOrgan> organs,
   Script script;
   const Table table(scene.gravity);
   const Top top(organs[index], table);
-  // Deep enough to be seen, never through the organ, and no deeper than a hand would cut at once: the force on a blade
-  // is the toughness times its length in the tissue, 4 N in liver at 25 mm.
+  // Deep enough to be seen, never through the organ nor to where it is damaged, and no deeper than a hand would cut at
+  // once: the force on a blade is the toughness times its length in the tissue, 4 N in liver at 25 mm.
   const Vec3 size = top.size();
-  const double depth = std::min(0.010, 0.2 * size.z), cut_depth = at.depth_share * std::min(0.025, 0.45 * size.z);
+  const double limit = scene.organs[index].damage_depth, deepest = limit > 0 ? 0.8 * limit : size.z;
+  const double depth = std::min({0.010, 0.2 * size.z, deepest}),
+               cut_depth = at.depth_share * std::min(0.025, 0.45 * size.z);
   const double cut_length = std::min(0.6 * size.y, 0.080);
   // A little in front of the ridge, where a viewer before the organ can see it, unless the organ is too thin there.
   const auto seen = [&](double share, double forward) {
@@ -187,7 +189,8 @@ Script organ_script(const SceneSpec& scene, std::span<const FilledOrgan> organs,
   else if (scalpel != none)
     add_cut(script, *scalpel, table, cut_path(top, seen(0.42 + at.along, 0.0), cut_length, cut_depth), cut_depth);
   // Pressing beside the cut opens it.
-  if (ball != none && scalpel != none) add_press(script, *ball, table, seen(0.50 + at.along, 0.18), 1.6 * depth, 1.0);
+  if (ball != none && scalpel != none)
+    add_press(script, *ball, table, seen(0.50 + at.along, 0.18), std::min(1.6 * depth, deepest), 1.0);
   if (script.steps.empty()) script.steps.push_back(wait(1));
   return script;
 }

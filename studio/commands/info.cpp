@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -11,6 +12,7 @@
 #include "studio/output/printable.h"
 #include "studio/session/anonymise.h"
 #include "studio/session/late_ticks.h"
+#include "studio/session/record_session.h"
 #include "studio/session/session_info.h"
 
 namespace ctpm::commands {
@@ -78,8 +80,13 @@ void print_text(recordings::SessionReader& reader, const recordings::SessionStat
           organ.count, organ.layer_count, organ.sphere_radius * 1e3, organ.spacing * 1e3);
   print("network    %s, %s\n", importers::counted(std::int64_t(model.sphere_count()), "sphere").c_str(),
         importers::counted(std::int64_t(model.element_count()), "element").c_str());
-  print("tick time  p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms; %lld late\n", s.tick_time_p50 * 1e3,
-        s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)s.late_ticks);
+  // Only who records in real time knows how long it waited.
+  const bool has_clock =
+      std::ranges::any_of(s.values, [](const auto& value) { return value.first == session::kWaited; });
+  const std::string late = std::to_string(s.late_ticks) + " late";
+  print("tick time  p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms; %s\n", s.tick_time_p50 * 1e3,
+        s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3,
+        s.late_ticks > 0 || has_clock ? late.c_str() : "nothing known of late ones (--fast, or anonymised)");
   if (s.late_ticks > 0)
     print("late       because of: %s (%s)\n", session::late_ticks_of(events, model.tick).text().c_str(),
           session::kLateCausesSay);

@@ -132,7 +132,7 @@ Result<Beginning> begin(const RecordArguments& arguments) {
 }
 
 int print_outcome(const std::string& path, const Model& model, const session::RecordOutcome& outcome,
-                  const session::TickTimes& times) {
+                  const session::TickTimes& times, bool in_real_time) {
   const recordings::SessionStatistics& s = outcome.statistics;
   const bool was_refused = stepping::is_refused(outcome.run.status);
   if (was_refused)
@@ -141,8 +141,10 @@ int print_outcome(const std::string& path, const Model& model, const session::Re
   if (!outcome.run.fault.empty()) print_remark(path + ": error: " + outcome.run.fault + "; what came before is saved");
   print("%s: %.3f s in %lld ticks, %s, %s severed\n", path.c_str(), double(s.ticks) * model.tick, (long long)s.ticks,
         extremes_text(s.max_force, s.max_depth).c_str(), importers::counted(s.severed, "element").c_str());
-  print("tick time p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms, %lld late\n", s.tick_time_p50 * 1e3,
-        s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3, (long long)outcome.run.late_ticks);
+  const std::string late = std::to_string(outcome.run.late_ticks) + " late";
+  print("tick time p50 %.3f ms, p99 %.3f ms, p99.9 %.3f ms, max %.3f ms, %s\n", s.tick_time_p50 * 1e3,
+        s.tick_time_p99 * 1e3, s.tick_time_p999 * 1e3, s.tick_time_max * 1e3,
+        in_real_time ? late.c_str() : "not in real time");
   if (outcome.run.late_ticks > 0)
     print("late because of: %s (%s)\n", outcome.run.late_by.text().c_str(), session::kLateCausesSay);
   if (outcome.run.fallbacks > 0)
@@ -220,7 +222,7 @@ int run_record(RecordArguments arguments) {
   const std::string& planned = motion.empty() ? arguments.source.script : motion;
   if (!planned.empty() && took_tool && options.most_ticks == 0 && !stop.came())
     print_warnings(find_misses(outcome->statistics, took_blade, planned));
-  return print_outcome(arguments.output, start.model, *outcome, all_times);
+  return print_outcome(arguments.output, start.model, *outcome, all_times, options.in_real_time);
 }
 
 }  // namespace

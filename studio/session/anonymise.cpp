@@ -222,6 +222,10 @@ std::vector<std::string> what_stays() {
 Result<std::vector<AnonymisedSession>> anonymise(const AnonymiseRequest& request, const PseudonymKey& key) {
   Result<std::vector<SessionReader>> sessions = open_all(request.sessions);
   if (!sessions) return sessions.errors();
+  std::error_code ignored;
+  if (sessions->size() > 1 && request.output.ends_with(".ctpm") && !fs::is_directory(request.output, ignored))
+    return Error{request.output, "is the name of one session, and " + std::to_string(sessions->size()) + " are given",
+                 "give a folder"};
   const Result<std::vector<std::string>> places = places_of(request, *sessions, key);
   if (!places) return places.errors();
   std::error_code failure;

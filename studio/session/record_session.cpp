@@ -70,7 +70,7 @@ Result<RecordOutcome> record_session(const recordings::SessionStart& start, sour
   State state = start.initial_state;
   outcome.run = run_session(start.model, state, source, *writer, running);
   std::vector<recordings::NamedValue> values = source.statistics();
-  if (options.in_real_time) values.emplace_back("waited_for_processor_s", outcome.run.waited);
+  if (options.in_real_time) values.emplace_back(kWaited, outcome.run.waited);
   const Result<recordings::SessionStatistics> statistics = writer->finish(std::move(values));
   if (!statistics) return statistics.errors();
   outcome.statistics = *statistics;

@@ -15,6 +15,9 @@
 
 namespace ctpm::session {
 
+/// Value of a session that was recorded in real time: how long its ticks' thread waited for a processor [s].
+inline constexpr const char* kWaited = "waited_for_processor_s";
+
 struct RecordOutcome {
   RunOutcome run;
   recordings::SessionStatistics statistics;

@@ -278,6 +278,14 @@ TEST(Repair, AnOrganWithAHoleIsNotDroppedForWhatIsClosedBesideIt) {
   EXPECT_EQ(both->size(), 2u);
 }
 
+TEST(Repair, ASheetIsCalledOneAndNobodyIsToldToCapIt) {
+  const importers::RawMesh raw = zoo::without(zoo::box({0.1, 0.08, 0.01}, 4), [](Vec3 p) { return p.z < 0.0049; });
+  const auto errors = importers::repair_mesh(raw, 1, {}).errors();
+  ASSERT_FALSE(errors.empty());
+  EXPECT_NE(errors[0].message.find("it is a sheet"), std::string::npos) << errors[0].message;
+  EXPECT_EQ(errors[0].hint.find("largest_hole_mm"), std::string::npos) << errors[0].hint;
+}
+
 TEST(Repair, AShellWithinTheLargestIsACavity) {
   // A bladder with a wall of 2 mm, the inner shell drawn either way round.
   for (const bool is_turned : {false, true}) {

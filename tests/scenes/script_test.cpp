@@ -455,6 +455,25 @@ TEST(DefaultScript, PressesIntoTheTopOfABlockAndCutsIt) {
   for (const double z : lowest) EXPECT_GT(z, kTop / 2);
 }
 
+TEST(DefaultScript, StaysAboveTheDepthThatTheSceneCallsDamage) {
+  scenes::SceneSpec scene = block_scene("[9, 9, 7]");
+  const std::vector<FilledOrgan> organs{scenes::fill_rig(scene.organs.at(0))};
+  const auto deepest = [&] {
+    const scenes::ScriptPlayer player(scenes::default_script(scene, organs), tools_of_model(), kTick);
+    double lowest = 1;
+    for (std::int64_t tick = 0; tick < player.tick_count(); ++tick)
+      if (const Inputs inputs = player.at(tick); inputs.tool == 0) lowest = std::min(lowest, inputs.position.z - 0.006);
+    return (6 + 0.5) * 12e-3 - lowest;  // below the top [m]
+  };
+  scene.organs[0].damage_depth = 0;
+  EXPECT_GT(deepest(), 0.012);
+  for (const double limit : {0.012, 0.006}) {
+    scene.organs[0].damage_depth = limit;
+    EXPECT_LT(deepest(), limit);
+    EXPECT_GT(deepest(), 0.5 * limit);
+  }
+}
+
 TEST(ScriptPlayer, FacingTurnsABladeAboutItsOwnAxisAlone) {
   for (const Vec3 way : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, -1, 0}, Vec3{0.6, 0.8, 0}}) {
     scenes::Script script;

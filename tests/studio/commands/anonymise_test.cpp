@@ -239,6 +239,8 @@ TEST_F(Anonymise, WhatCannotBeDoneIsRefusedWholly) {
     EXPECT_EQ(refused.code, 2) << file;
     EXPECT_TRUE(holds(refused.err, std::string(file) + ": error: is no key but " + kind)) << refused.err;
   }
+  refused = ctpm({"anonymise", "a.ctpm", "a.ctpm", "-o", "both.ctpm"});
+  EXPECT_TRUE(refused.code == 2 && holds(refused.err, "both.ctpm: error: is the name of one session")) << refused.err;
   refused = ctpm({"anonymise", "a.ctpm", "a.ctpm", "-o", "twice/"});
   EXPECT_EQ(refused.code, 2);
   EXPECT_TRUE(holds(refused.err, "is the same session as another")) << refused.err;

@@ -175,6 +175,23 @@ TEST_F(Record, WhatDoesNotFitTogetherIsToldAtOnceAndNothingIsWritten) {
             {"--at: error: got", "must be in [0, 0.100] s: so long lasts a.ctpm"});
 }
 
+TEST_F(Record, OnlyASessionInRealTimeSaysThatNoTickWasLate) {
+  EXPECT_TRUE(holds(ctpm({"record", "block.json", "--script", "press.json", "-o", "fast.ctpm", "--fast"}),
+                    "ms, not in real time"));
+  EXPECT_TRUE(holds(ctpm({"info", "fast.ctpm"}), "nothing known of late ones (--fast"));
+  EXPECT_TRUE(holds(ctpm({"record", "block.json", "--script", "press.json", "-o", "real.ctpm", "--duration-s", "0.2"}),
+                    " late"));
+  EXPECT_TRUE(holds(ctpm({"info", "real.ctpm"}), " late"));
+}
+
+TEST_F(Record, AMotionThatTouchesNothingIsTold) {
+  write("far.csv", "time_s,tool_x_mm,tool_y_mm,tool_z_mm\n0,5000,0,60\n0.1,5000,0,55\n");
+  const auto done =
+      testing::run_ctpm({"record", "block.json", "--motion", "far.csv", "-o", "far.ctpm", "--fast"}, folder_.path());
+  EXPECT_EQ(done.code, 0);
+  EXPECT_NE(done.err.find("far.csv: warning: never touches any tissue"), std::string::npos) << done.err;
+}
+
 TEST_F(Record, AScriptOrAMotionMayComeThroughAPipe) {
   write("motion.csv", "time_s,tool_x_mm,tool_y_mm,tool_z_mm\n0,0,0,60\n0.1,0,0,55\n");
   for (const char* source : {"--script <(cat press.json)", "--motion <(cat motion.csv)"}) {
