@@ -196,7 +196,11 @@ class Repair {
   /// where only the largest is kept, that one.
   Errors keep_closed_parts() {
     const double largest_hole = options_.largest_hole.value_or(kHoleShare * diagonal_);
-    const Errors is_sheet{{path_, "the mesh bounds no volume", "it is a sheet; export a closed surface"}};
+    const Vec3 size = bounding_box(soup_).most - bounding_box(soup_).least;
+    const Errors is_sheet{{path_,
+                           "the mesh bounds no volume in its box of " + mm_text(size.x) + " x " + mm_text(size.y) +
+                               " x " + mm_text(size.z),
+                           "it is a sheet, or a vertex lies far from the others; export a closed surface"}};
     std::vector<Hole> filled;
     Errors open;
     Refused refused;

@@ -90,10 +90,19 @@ const JsonNode* FieldReader::take_list(const Key& key, std::size_t least) {
 }
 
 void FieldReader::constant(const Key& key, const char* value) {
+  static const std::map<std::string, std::string> kOthers{{"ctpm-scene", "a scene"},
+                                                          {"ctpm-script", "a script"},
+                                                          {"ctpm-course", "a course"},
+                                                          {"ctpm-sweep", "a sweep"},
+                                                          {"ctpm-materials", "materials"}};
   const JsonNode* node = take(key);
   if (node == nullptr || (node->kind == JsonKind::text && node->text == value)) return;
-  problems_.add(child_pointer(pointer_, key.name), node->place,
-                "got " + describe(*node) + ", must be " + in_quotes(value));
+  const std::string pointer = child_pointer(pointer_, key.name), must = ", must be " + in_quotes(value);
+  const auto other = node->kind == JsonKind::text ? kOthers.find(node->text) : kOthers.end();
+  if (other == kOthers.end())
+    problems_.add(pointer, node->place, "got " + describe(*node) + must);
+  else  // its keys are none of these
+    problems_.add_only(pointer, node->place, "got " + describe(*node) + must, "this file holds " + other->second);
 }
 
 void FieldReader::constant(const Key& key, int value) {

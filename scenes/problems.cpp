@@ -32,6 +32,11 @@ void Problems::add(const std::string& pointer, const std::string& message, const
   add(pointer, places_.find(pointer), message, hint, refused);
 }
 
+void Problems::add_only(const std::string& pointer, Place place, const std::string& message, const std::string& hint) {
+  add(pointer, place, message, hint, "");
+  only_ = places_.error_at(pointer, place, message, hint);
+}
+
 void Problems::add_rule(const std::string& pointer, const std::string& message, const std::string& hint,
                         const std::string& refused) {
   if (is_good(refused)) add(pointer, message, hint, refused);
@@ -63,6 +68,7 @@ Errors Problems::in_order(std::vector<Problem> problems) {
 }
 
 Errors Problems::errors() const {
+  if (only_) return {*only_};
   Errors errors = in_order(errors_);
   if (is_full())
     errors.push_back({places_.file_name(), std::to_string(error_count_ - kMostListed) + " more errors are not listed",

@@ -56,8 +56,8 @@ void Inset::add(render::Frame& picture, int place, const State& state, render::D
     const Vec3 up = render::up_of(*scene.model), back = whole.eye - whole.target,
                front = unit(back - dot(back, up) * up);
     draw.cutaway = {has_place_ ? place_ : render::rest_bounds(scene).centre(), front};
-    draw.camera =
-        render::fitted_camera(scene, -front - 0.2 * up, up, kFieldOfView, double(picture.width) / picture.height);
+    draw.camera = render::section_camera(scene, draw.cutaway.point, front, -front - 0.2 * up, up, kFieldOfView,
+                                         double(picture.width) / picture.height);
   }
   const render::Frame small = renderer_->draw(state, draw);
   const auto [left, top, width, height] = box({picture.width, picture.height}, place);

@@ -31,6 +31,13 @@ Camera fitted_camera(const SceneView& scene, Vec3 direction, Vec3 up, double fov
   return fit_camera(rest_points(scene), direction, up, fov_deg, aspect);
 }
 
+Camera section_camera(const SceneView& scene, Vec3 place, Vec3 normal, Vec3 direction, Vec3 up, double fov_deg,
+                      double aspect) {
+  std::vector<Vec3> points = rest_points(scene);
+  for (Vec3& p : points) p += dot(place - p, normal) * normal;
+  return fit_camera(points, direction, up, fov_deg, aspect);
+}
+
 Vec3 up_of(const Model& model) {
   const double strength = norm(model.gravity);
   return strength > 0 ? -model.gravity / strength : Vec3{0, 0, 1};

@@ -286,6 +286,15 @@ TEST(Repair, ASheetIsCalledOneAndNobodyIsToldToCapIt) {
   EXPECT_EQ(errors[0].hint.find("largest_hole_mm"), std::string::npos) << errors[0].hint;
 }
 
+TEST(Repair, AVertexFarAwayIsNotCalledASheetAlone) {
+  importers::RawMesh raw = zoo::sphere(0.05, 3);
+  raw.vertex[7].x = 1000;
+  const auto errors = importers::repair_mesh(raw, 1, {}).errors();
+  ASSERT_FALSE(errors.empty());
+  EXPECT_NE(errors[0].message.find("in its box of 1000"), std::string::npos) << errors[0].message;
+  EXPECT_NE(errors[0].hint.find("a vertex lies far from the others"), std::string::npos) << errors[0].hint;
+}
+
 TEST(Repair, AShellWithinTheLargestIsACavity) {
   // A bladder with a wall of 2 mm, the inner shell drawn either way round.
   for (const bool is_turned : {false, true}) {

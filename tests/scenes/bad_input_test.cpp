@@ -244,6 +244,9 @@ TEST(BadInput, AnOldOrForeignFileIsRefused) {
   EXPECT_NE(
       errors_of(R"({"format": "other", "version": 1})").find("/format: got the text \"other\", must be \"ctpm-scene\""),
       std::string::npos);
+  EXPECT_EQ(errors_of(R"({"format": "ctpm-script", "version": 1, "steps": []})"),
+            "t.json:1:12: error: /format: got the text \"ctpm-script\", must be \"ctpm-scene\" (this file holds a "
+            "script)\n");
   EXPECT_NE(errors_of(R"({"format": "ctpm-scene", "version": 2})").find("/version: got the number 2, must be 1"),
             std::string::npos);
   EXPECT_EQ(errors_of("[]"), "t.json:1:1: error: /: got a list of 0, must be an object\n");
