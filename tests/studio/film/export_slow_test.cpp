@@ -24,8 +24,8 @@ TEST(ExportSlow, TenMinutesTakeNoMoreMemoryThanTwentySeconds) {
                                  folder.path());
   ASSERT_EQ(recorded.code, 0) << recorded.err;
   const auto memory_to = [&](const char* end) {
-    const auto exported =
-        run_ctpm({"export", "long.ctpm", "-o", "a.mp4", "--size", "320x180", "--to-s", end}, folder.path());
+    const auto exported = run_ctpm(
+        {"export", "long.ctpm", "-o", std::string(end) + ".mp4", "--size", "320x180", "--to-s", end}, folder.path());
     EXPECT_EQ(exported.code, 0) << exported.err;
     return exported.memory_mib;
   };
