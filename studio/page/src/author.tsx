@@ -16,7 +16,7 @@ import type { CameraView, Listing } from "./protocol";
 import { SceneEditor } from "./scene_editor";
 import { SceneList } from "./scene_list";
 import type { Shown } from "./stage_scene";
-import { command, ofStep, verdictOf } from "./text";
+import { command, isFileName, ofStep, verdictOf } from "./text";
 import { kTurns, Viewer } from "./viewer";
 
 const kLookOnDisk = 2000; // [ms]
@@ -207,6 +207,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
           </Empty>
         )}
         {scene?.isLoading && !scene.shown && <Empty title={`Loading ${path}`}><p>Its organs are read and filled with spheres{scene.filled === null ? "" : `: ${Math.round(100 * scene.filled)} %`}.</p></Empty>}
+        {doc && scene && !scene.isLoading && !scene.shown && scene.problems.errors.length > 0 && <Empty title={`${path} cannot be shown`}><p>What is wrong stands beside its text. The picture comes when that is mended.</p></Empty>}
         {scene?.isLoading && scene.shown && <p class="busy" role="status">{scene.fillingText}</p>}
         {brushRadius !== null && brushSays && !scene?.isLoading && <p class="busy brush-says" role="status">{brushSays}</p>}
         {scene?.error && !doc && <Problems error={scene.error} />}
@@ -348,7 +349,7 @@ function CopyForm({ doc, onClose, onCopied }: { doc: SceneDocument; onClose: () 
   const field = useRef<HTMLInputElement>(null);
   useEffect(() => field.current?.select(), []);
   const path = `${folder ?? ""}${name}.json`;
-  const isName = /^[^/\\]+$/.test(name);
+  const isName = isFileName(name);
   return (
     <form class="conflict" onKeyDown={(e) => e.key === "Escape" && onClose()} onSubmit={(e) => {
       e.preventDefault();

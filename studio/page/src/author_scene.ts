@@ -132,6 +132,7 @@ export class AuthorScene {
       doc.onChange = () => this.changed();
       this.doc = doc;
       this.changed();
+      if (!this.isUnshown && !this.running) this.isLoading = false, this.onChange(); // its text has nothing to show yet
     } catch (failure) {
       this.isLoading = false, this.error = failure as Error;
       this.onChange();
@@ -155,7 +156,7 @@ export class AuthorScene {
     this.endWork();
     if (lastOpen) this.letGo();
     remember("");
-    this.doc = null, this.shown = null, this.error = null, this.tickTime = null, this.checked = null, this.shownPart = "";
+    this.doc = null, this.shown = null, this.error = null, this.tickTime = null, this.checked = null, this.shownPart = "", this.filled = null;
     this.viewer.set(kAuthorStage, null);
     this.stage = null;
   }
@@ -233,7 +234,7 @@ export class AuthorScene {
   /** Changes values while a change goes on, as the document's preview() does; an organ takes along what belongs to it. */
   preview(values: [JSONPath, Json | undefined][]): void {
     const { doc, stage } = this;
-    if (!doc) return;
+    if (!doc || doc.begun === undefined) return; // while its text is no JSON, nothing in it has a value
     doc.preview([...values, ...(this.isTakingAlong && stage ? takenAlong(values, doc.begun, stage.organSpheres, this.poses) : [])]);
   }
 

@@ -89,7 +89,7 @@ export class Connection {
       request.onload = () => {
         if (request.status === 201) return resolve();
         const answer = JSON.parse(request.responseText) as { errors: Problem[] };
-        reject(new CallFailed(answer.errors));
+        reject(new CallFailed(answer.errors, request.status === 409));
       };
       request.onerror = () => reject(new Error("the upload broke off"));
       request.onabort = () => reject(new Error("stopped"));

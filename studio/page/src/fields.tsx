@@ -1,3 +1,4 @@
+import { useRef } from "preact/hooks";
 import * as three from "three";
 
 /** A number that the text holds: `onInput` while it is changed, `onDone` when that is over. */
@@ -11,16 +12,21 @@ export function NumberField({ label, value, unit, step, least, hasOwnUnit = fals
   onInput: (value: number) => void;
   onDone: () => void;
 }) {
+  const shown = Number.isFinite(value) ? String(value) : "", latest = useRef(shown);
+  latest.current = shown;
   return (
     <label class="number-field">
       <span>{label}{hasOwnUnit && ` [${unit}]`}</span>
-      <input type="number" step={step} value={Number.isFinite(value) ? value : ""} aria-label={`${label} [${unit}]`}
+      <input type="number" step={step} value={shown} aria-label={`${label} [${unit}]`}
         onInput={(e) => {
           const number = e.currentTarget.valueAsNumber;
           // Not by the input's own least: its arrow keys would count steps from there.
           if (Number.isFinite(number) && !(number < (least ?? -Infinity))) onInput(number);
         }}
-        onChange={onDone} />
+        onChange={onDone}
+        onBlur={({ currentTarget: field }) => setTimeout(() => {
+          if (document.activeElement !== field && field.value !== latest.current) field.value = latest.current; // what was refused goes again
+        })} />
     </label>
   );
 }

@@ -55,7 +55,7 @@ export function Fit({ connection, scene, organ, name, radius }: {
         </>
       )}
       <Problems error={error} />
-      {result?.material === materialNow() && <FitResult result={result.fitted} />}
+      {result && result.material === materialNow() && <FitResult result={result.fitted} />}
     </>
   );
 }

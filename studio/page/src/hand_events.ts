@@ -16,7 +16,7 @@ function useKeys({ trainer, isRunning, redraw }: Leading, sound: ForceSound): vo
       if ((event.target as HTMLElement).closest(kTakesKeys) || event.ctrlKey || event.metaKey || event.altKey) return;
       const isLocked = document.pointerLockElement !== null;
       if (event.key === "Escape" && !isLocked) void trainer.end();
-      else if (event.key === "Escape" || (event.key === " " && trainer.isHeld)) document.exitPointerLock?.(), trainer.letGo();
+      else if (event.key === "Escape" || (event.key === " " && trainer.isLed)) document.exitPointerLock?.(), trainer.letGo();
       else if (event.key === " " && !(event.target as HTMLElement).closest("button, summary")) trainer.isHeld = true;
       else if (event.key.toLowerCase() === "m") sound.switch();
       else if (!trainer.press(event.key, event.shiftKey)) return;

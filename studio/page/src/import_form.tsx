@@ -33,6 +33,7 @@ export interface Imported {
 
 const kUnits: Record<string, string> = { "0.001": "mm", "0.01": "cm", "0.1": "dm", "1": "m", "0.0254": "in" };
 const kGap = 0.1; // between an organ that is added and the others, of its size, as the command leaves it
+const kMostNames = 100; // of an upload that are tried
 const kImportsCamera = "front"; // as an import names the camera that it places
 const kMaps = /\.(nii|nii\.gz|nrrd)$/i; // segmentations, of which each label is an organ
 const kGeneric = "soft-tissue"; // what an organ of no name is taken as
@@ -68,6 +69,18 @@ export function ImportResult({ imported }: { imported: Imported }) {
 function holesOf(error: Error | null): number | null {
   const found = error instanceof CallFailed ? error.problems.map(({ hint }) => Number(/largest_hole_mm (\d+)/.exec(hint)?.[1] ?? 0)) : [];
   return Math.max(0, ...found) || null;
+}
+
+/** Uploads a file under its name, or with a number where one of that name lies in the folder, maybe itself. */
+async function uploadAnew(connection: Connection, file: File, progress: (share: number) => void, signal: AbortSignal): Promise<string> {
+  const [, stem, ending] = /^(.*?)((?:\.nii)?\.[^.]*|)$/i.exec(file.name)!;
+  for (let i = 1, name = file.name; ; name = `${stem}-${++i}${ending}`)
+    try {
+      await connection.upload(name, file, progress, signal);
+      return name;
+    } catch (failure) {
+      if (!(failure instanceof CallFailed && failure.isTaken) || i >= kMostNames) throw failure;
+    }
 }
 
 /** The first camera of a scene, moved away until it sees a larger box as it saw the one before; null: it sees it already. */
@@ -157,8 +170,7 @@ export function ImportForm({ connection, taken, file, leftOut, open, onCancel, o
     try {
       if (!uploaded.current) {
         setProgress(["uploading", 0]);
-        await connection.upload(file.name, file, (share) => setProgress(["uploading", share]), signal);
-        uploaded.current = file.name;
+        uploaded.current = await uploadAnew(connection, file, (share) => setProgress(["uploading", share]), signal);
       }
       setProgress(["importing", 0]);
       const params = {

@@ -1,5 +1,5 @@
-import { render } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { type ComponentChildren, render } from "preact";
+import { useEffect, useErrorBoundary, useRef, useState } from "preact/hooks";
 import { Connection, onNewToken, takeToken } from "./connection";
 import { Author } from "./author";
 import { LeaveQuestion, type Recording } from "./leaving";
@@ -24,6 +24,18 @@ function writePlace(room: Room, place: Place): void {
 let token = takeToken();
 const start = readPlace();
 const kAskAgain = 2000; // whether the program is back [ms]
+
+/** A room: an error of the page ends what is shown of it, and not the others. */
+function Guarded({ children }: { children: ComponentChildren }) {
+  const [error, openAgain] = useErrorBoundary((failure) => console.error(failure)) as [Error | undefined, () => void];
+  if (!error) return <>{children}</>;
+  return (
+    <Empty title="This room has stopped">
+      <p role="alert">The page made an error: {error.message ?? String(error)}. Scenes that were not saved are kept as drafts, and a session that was being recorded is in its file.</p>
+      <p><button type="button" class="main" onClick={openAgain}>Open the room again</button></p>
+    </Empty>
+  );
+}
 
 function App() {
   const [connection, setConnection] = useState<Connection | null>(null);
@@ -132,14 +144,14 @@ function App() {
               another tab, this page goes on. Scenes that were not saved are kept as drafts, and a session that was being recorded is there up to its last whole second: <code>{command("recover", "SESSION.ctpm", "-o", "saved.ctpm")}</code></p>
           </Empty>
         ) : connection && listing ? (
-          room === "review" ? (
+          <Guarded key={room}>{room === "review" ? (
             <Review connection={connection} listing={listing} place={place} onPlace={keepReviewed} />
           ) : room === "author" ? (
             <Author connection={connection} listing={listing} onChanged={list} onTry={(scene, text, seen) => go("train", { scene, text, seen })} />
           ) : (
             <Train connection={connection} listing={listing} tryScene={place.scene} tryText={place.text} tryView={place.seen} onChanged={list}
               onRecording={(running) => (recording.current = running)} onReview={(there) => go("review", there)} onAuthor={() => go("author", {})} />
-          )
+          )}</Guarded>
         ) : (
           <Empty title="Connecting"><p>to the program on this machine.</p></Empty>
         )}

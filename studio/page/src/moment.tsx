@@ -91,9 +91,12 @@ export function Moment({ connection, player, frame, other }: { connection: Conne
           ["largest force", newtons(info.max_force_n)],
           ["deepest press", millimetres(info.max_depth_m, 2)],
           ...tickRows(info.tick_time_p50_s, info.tick_time_p99_s, info.tick_s),
-          ["late steps", String(info.late_ticks)],
-          ["behind the clock", behind(info.slip_s, info.slip_max_s)],
+          // Only a session that was recorded in real time knows how long it waited.
+          ...("waited_for_processor_s" in info.values || info.late_ticks > 0
+            ? [["late steps", String(info.late_ticks)], ["behind the clock", behind(info.slip_s, info.slip_max_s)]] as [string, string][]
+            : [["late steps", "not known"]] as [string, string][]),
         ]} />
+        {!info.ended_cleanly && <p class="warning">It has no clean end: its recording was interrupted, or still goes on.</p>}
         {[info.physics_remark, ...info.remarks].filter(Boolean).map((remark) => <p key={remark} class="warning">{remark}</p>)}
         {progress ? <Working what="verifying" done={progress[0]} total={progress[1]} onCancel={() => running.current?.abort()} />
           : <button type="button" onClick={() => void verify()}>Verify the replay</button>}

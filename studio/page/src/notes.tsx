@@ -95,6 +95,8 @@ function NoteEditor({ note, isThere, canSave, onSave, onClose }: {
   );
 }
 
+let begunNotes: Record<string, string> = {}; // words of each session's next note, while the page is there
+
 /** Notes at moments of a session, kept in a file beside it. */
 export function NotesPanel({ player, notes: { all, write } }: { player: Player; notes: KeptNotes }) {
   const second = player.tracks.get(1)?.session.path;
@@ -102,7 +104,8 @@ export function NotesPanel({ player, notes: { all, write } }: { player: Player; 
   const stage = second ? wanted : 0, { path, info } = player.tracks.get(stage)!.session;
   const time = player.timeOf(stage), isIn = time >= 0 && time <= info.duration_s;
   const read = all[path], notes = read && !(read instanceof Error) ? read.notes : null; // until they are there nothing can be added to them
-  const [text, setText] = useState("");
+  const [begun, setBegun] = useState(begunNotes), text = begun[path] ?? "";
+  const setText = (words: string) => setBegun((begunNotes = { ...begunNotes, [path]: words }));
   const [edited, setEdited] = useState<Record<string, Note | undefined>>({}); // of each session one, so that none is lost on the way to another
   const [deleted, setDeleted] = useState<Record<string, Note | undefined>>({}); // last
   const edit = (note?: Note) => setEdited((now) => ({ ...now, [path]: note }));

@@ -13,7 +13,7 @@ export interface Problem {
 }
 
 export class CallFailed extends Error {
-  constructor(readonly problems: Problem[]) {
+  constructor(readonly problems: Problem[], readonly isTaken = false /* the file is there already */) {
     super(problems.map(problemText).join("\n"));
   }
 }

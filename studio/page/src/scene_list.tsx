@@ -8,7 +8,7 @@ import { parseJson } from "./json_edit";
 import { Problems, useFocusBack } from "./parts";
 import type { Listing, Removal, SceneOfSession } from "./protocol";
 import { RemovedScenes } from "./removed_scenes";
-import { counted, sceneName } from "./text";
+import { counted, isFileName, sceneName } from "./text";
 
 /** A scene that was removed in this page, which says so until it is told that this is known. */
 interface Gone {
@@ -105,7 +105,7 @@ function SceneForm({ connection, path, isChanged, onRenamed, onRemoved, onClose 
   const first = useRef<HTMLInputElement>(null), sure = useRef<HTMLButtonElement>(null);
   useEffect(() => (first.current?.focus(), first.current?.select()), []);
   useEffect(() => sure.current?.focus(), [removal]);
-  const isName = /^[^/\\]+$/.test(name) && name !== stem, to = `${folder}${name}.json`;
+  const isName = isFileName(name) && name !== stem, to = `${folder}${name}.json`;
 
   const rename = () => connection.call<{ rewritten: string[] }>("scene.rename", { path, to }).then((done) => {
     setRewritten(done.rewritten);

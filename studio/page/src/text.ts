@@ -26,6 +26,11 @@ export function verdictOf(errors: number, warnings: number): string {
   return errors ? counted(errors, "error") : warnings ? `good, ${counted(warnings, "warning")}` : "good";
 }
 
+/** Whether a file can have that name: it is not blank, and names no folder. */
+export function isFileName(name: string): boolean {
+  return /^[^/\\]+$/.test(name) && name.trim() === name && !/^\.+$/.test(name);
+}
+
 /** That path, or with the next number, so that it is none of those that are taken. */
 export function freePath(taken: string[], path: string): string {
   const [, stem, ending = ""] = /^(.*?)(?:-\d+)?(\.[^./]+)?$/.exec(path)!;

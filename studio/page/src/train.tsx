@@ -210,7 +210,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
           <Section title="Session">
             <label class="field">
               <span>record as (empty: nothing is recorded)</span>
-              <input value={phase === "loading" ? output : chosenName ?? freeName(listing, kUsualName)} disabled={phase === "loading"} onInput={(e) => setChosenName(e.currentTarget.value)} />
+              <input value={phase === "loading" ? output : chosenName ?? freeName(listing, kUsualName)} disabled={phase === "loading"} onInput={(e) => setChosenName(e.currentTarget.value.trim() && e.currentTarget.value)} />
             </label>
             <DeviceForm choice={device} onChoice={setDevice} isDisabled={phase === "loading"} />
             <ExpertChoice listing={listing.sessions} scenes={scenes} sceneKey={sceneKey} expert={phase === "choose" ? chosenExpert : expert} onExpert={setChosenExpert} use="shown as a ghost" />

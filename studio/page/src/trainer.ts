@@ -99,6 +99,11 @@ export class Trainer {
     this.hasBegun ||= isHeld;
   }
 
+  /** By the pointer or by keys. */
+  get isLed(): boolean {
+    return this.held || this.isLedByKeys;
+  }
+
   get isRunning(): boolean {
     return this.timer !== null;
   }
@@ -251,7 +256,7 @@ export class Trainer {
 
   /** Moves the hand that is led here away from the viewer, by notches of the wheel. */
   moveDeep(notches: number): void {
-    if (this.isHeld || this.isLedByKeys) this.moveBy(0, 0, notches * kWheelStep * this.gain());
+    if (this.isLed) this.moveBy(0, 0, notches * kWheelStep * this.gain());
   }
 
   /** Does what a key says. False: nothing. */

@@ -166,6 +166,38 @@ step("errors in the text are those of check, at their places", async () => {
   assert.equal(await text(), good);
 });
 
+step("a text that is no JSON for a while stops nothing, and what fields refuse does not stay in them", async () => {
+  const good = onDisk(), mistake = () => page.waitForSelector("aside .jumps button.error");
+  await page.click("#tab-filling");
+  await write(good.replace('"version"', '"version'));
+  await mistake();
+  for (const tab of ["scene", "place", "filling"]) {
+    await page.click(`#tab-${tab}`);
+    await page.waitForSelector(`#tab-${tab}[aria-selected=true]`);
+  }
+  // Opened with the mistake in it, it says so, and waits for nothing.
+  await page.reload();
+  await page.locator(".scenes button", { has: page.locator(`span:text-is("${kScene.replace(".json", "")}")`) }).click();
+  await mistake();
+  await page.waitForSelector(".view .empty:has-text('cannot be shown')");
+  assert.equal(await page.locator(".view .empty:has-text('Loading')").count(), 0);
+  await page.click("#tab-filling");
+  await button("Undo").click();
+  await settled();
+  assert.equal(await text(), good);
+  await page.click("#tab-place");
+  await page.locator("#tab-place[aria-selected=true]").waitFor();
+  await page.locator(".objects li button", { has: page.locator(`span:text-is("${JSON.parse(good).organs[0].name}")`) }).click();
+  const scale = page.getByLabel("scale of the mesh", { exact: false });
+  const was = await scale.inputValue();
+  for (const refused of ["-1", ""]) {
+    await scale.fill(refused);
+    await page.keyboard.press("Tab");
+    await page.waitForFunction(([field, value]) => field.value === value, [await scale.elementHandle(), was]);
+  }
+  assert.equal(await text(), good);
+});
+
 step("the schema completes keys and values", async () => {
   const good = onDisk();
   const loads = page.locator(".cm-tooltip-autocomplete li:has-text('loads')");

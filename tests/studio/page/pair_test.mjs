@@ -457,6 +457,11 @@ step("notes stay, and a link leads to the moment", async () => {
   await page.keyboard.press("Home");
   for (let i = 0; i < 20; ++i) await page.keyboard.press("Shift+ArrowRight");
   await page.fill("#panel textarea", "<b>too steep</b> here");
+  // What is not added yet is there after a look elsewhere.
+  await page.locator("#panel select").selectOption(kClumsy);
+  assert.equal(await page.locator("#panel textarea").inputValue(), "");
+  await page.locator("#panel select").selectOption(kExpert);
+  assert.equal(await page.locator("#panel textarea").inputValue(), "<b>too steep</b> here");
   await page.click("#panel button.main");
   await page.waitForSelector("#panel .jumps button:has-text('<b>too steep</b>')");
   const time = await clock(); // of the first session; the one beside may begin earlier
