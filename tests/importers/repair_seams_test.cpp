@@ -196,5 +196,20 @@ TEST(Seams, CracksWallsHolesFlipsAndCrumbsAtOnceAreAllToldAndMended) {
   EXPECT_NEAR(mesh.volume, 1e-3, 1e-9);
 }
 
+TEST(Topology, WeldingJoinsWhatIsNearWhereverItLies) {
+  // Pairs of vertices along a line, in steps that hit every place of the search's cells.
+  constexpr double kDistance = 1e-4;
+  for (const double apart : {0.9, 1.1}) {
+    importers::Soup soup;
+    for (int n = 0; n < 300; ++n) {
+      const double x = -0.1 + 7.3 * kDistance * n;
+      soup.vertex.push_back({x, -x, 0.5 * x});
+      soup.vertex.push_back({x + apart * kDistance, -x, 0.5 * x});
+      soup.triangle.push_back({2 * n, 2 * n + 1, (2 * n + 2) % 600});
+    }
+    EXPECT_EQ(importers::weld(soup, kDistance), apart < 1 ? 300 : 0);
+  }
+}
+
 }  // namespace
 }  // namespace ctpm
