@@ -142,8 +142,8 @@ bool get_names(wire::Reader& reader, std::vector<std::string>& names) {
   return true;
 }
 
-/// Vertices used by triangles must be finite; others do not matter. Not counted are vertices, which readers number in
-/// their own way: of each triangle, or not.
+/// Vertices used by triangles must be finite; others do not matter. Triangles are counted, because readers number
+/// vertices in different ways.
 Errors check_vertices(const RawMesh& mesh) {
   const std::int64_t bad_count = std::ranges::count_if(mesh.triangle, [&](const Triangle& triangle) {
     return std::ranges::any_of(triangle, [&](std::int32_t v) { return !is_finite(mesh.vertex[std::size_t(v)]); });

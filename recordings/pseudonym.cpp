@@ -37,7 +37,7 @@ Result<Done> write_new(const std::string& path, const std::vector<unsigned char>
   return Error{path, "cannot be written", ""};
 }
 
-/// What of others' a file is rather than a key, in words; empty: it may be one. A new key's bytes may be any.
+/// Names what a file is that is plainly no secret key; empty: it may be one. The 32 bytes of a new key may be any.
 std::string kind_of(const std::vector<unsigned char>& bytes) {
   if (bytes.size() == key_size) return "";
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());

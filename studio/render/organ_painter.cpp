@@ -191,7 +191,7 @@ void OrganPainter::draw(const Gl& gl, const SceneView& scene, const DrawOptions&
     // nobody sees an inner face.
     set_look(outside, scene.looks[i], options);
     if (glassy) {
-      // Where it is cut away, one looks at the far side's inner face, through nothing or the near side.
+      // Where the organ is cut away, the inner face of its far side is seen. It comes first: the near side covers it.
       outside.set("blood", scene.looks[i].blood);
       draw_indices(order.outside + order.near_cut + order.wall, order.averted);
       draw_indices(0, order.outside);

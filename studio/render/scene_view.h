@@ -69,8 +69,8 @@ Vec3 up_of(const Model& model);
 /// A camera that looks along `direction` and frames all organs at rest.
 Camera fitted_camera(const SceneView& scene, Vec3 direction, Vec3 up, double fov_deg, double aspect);
 
-/// A camera on a section of the organs at rest, by the plane through `place` across `normal`: as close as their outline
-/// in it allows, wherever the plane is, so that the camera moves as evenly as it does.
+/// A camera on the section of the organs at rest by the plane through `place` across `normal`. It frames their outline
+/// as seen along `normal`, so it only moves along with the plane, and a film of it does not shake.
 Camera section_camera(const SceneView& scene, Vec3 place, Vec3 normal, Vec3 direction, Vec3 up, double fov_deg,
                       double aspect);
 
