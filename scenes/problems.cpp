@@ -17,6 +17,7 @@ bool Problems::is_full() const { return error_count_ > kMostListed; }
 
 void Problems::add(const std::string& pointer, Place place, const std::string& message, const std::string& hint,
                    const std::string& refused) {
+  if (is_closed_) return;
   ++error_count_;
   if (is_full()) return;
   errors_.push_back({place, places_.error_at(pointer, place, message, hint)});
@@ -33,8 +34,9 @@ void Problems::add(const std::string& pointer, const std::string& message, const
 }
 
 void Problems::add_only(const std::string& pointer, Place place, const std::string& message, const std::string& hint) {
+  errors_.clear(), error_count_ = 0;
   add(pointer, place, message, hint, "");
-  only_ = places_.error_at(pointer, place, message, hint);
+  is_closed_ = true;
 }
 
 void Problems::add_rule(const std::string& pointer, const std::string& message, const std::string& hint,
@@ -68,7 +70,6 @@ Errors Problems::in_order(std::vector<Problem> problems) {
 }
 
 Errors Problems::errors() const {
-  if (only_) return {*only_};
   Errors errors = in_order(errors_);
   if (is_full())
     errors.push_back({places_.file_name(), std::to_string(error_count_ - kMostListed) + " more errors are not listed",

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <initializer_list>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -31,8 +30,8 @@ class Problems {
   /// The same, at the place of the value at `pointer`.
   void add(const std::string& pointer, const std::string& message, const std::string& hint, const std::string& refused);
 
-  /// Reports an error at `place` beside which no other means anything: the whole text is refused, and errors() holds
-  /// this one alone.
+  /// Reports an error at `place` beside which no other means anything: the whole text is refused, and errors before and
+  /// after it are dropped.
   void add_only(const std::string& pointer, Place place, const std::string& message, const std::string& hint);
 
   /// Reports an error that a later stage finds in the value at `pointer`, and refuses the value at `refused`. Does
@@ -67,7 +66,7 @@ class Problems {
 
   TextPlaces places_;
   std::vector<Problem> errors_, warnings_;
-  std::optional<Error> only_;
+  bool is_closed_ = false;  ///< add_only() was called
   std::size_t error_count_ = 0;
   std::set<std::string> refused_;         ///< pointers of refused values
   std::set<std::string> around_refused_;  ///< pointers of the objects and lists that hold them
