@@ -103,13 +103,11 @@ class Import {
     }
     scene_.name = stem_, scene_.lips_meet = true;
     Errors errors = importers::check_file(request_.mesh);
-    append(errors, check_mesh_file(beside(stem_ + ".obj")));
-    for (const std::string& file : {request_.scene, beside(stem_ + ".script.json")})
-      append(errors, output::check_new(file, request_.overwrite));
+    for (const std::string& file : files_of_import(request_.scene)) append(errors, check_new_file(file));
     return errors;
   }
 
-  Result<Done> check_mesh_file(const std::string& file) const {
+  Result<Done> check_new_file(const std::string& file) const {
     std::error_code ignored;
     if (fs::equivalent(file, request_.mesh, ignored))
       return Error{file, "the repaired mesh would replace the mesh that is imported",
@@ -244,7 +242,7 @@ class Import {
       draft.spec.anchors = request_.anchors, draft.spec.at = draft.part.at = at, draft.spec.turn = request_.turn;
       if (Errors errors = add_layers(draft); !errors.empty()) return errors;
       if (request_.stiffness_scale) draft.spec.material.stiffness_scale = request_.stiffness_scale;
-      if (const Result<Done> is_new = check_mesh_file(draft.part.mesh_file); !is_new) return is_new.errors();
+      if (const Result<Done> is_new = check_new_file(draft.part.mesh_file); !is_new) return is_new.errors();
       drafts_.push_back(std::move(draft));
     }
     return {};

@@ -121,6 +121,13 @@ Result<std::string> stem_of_scene(const std::string& path) {
   return stem;
 }
 
+std::vector<std::string> files_of_import(const std::string& scene) {
+  const auto beside = [&](const char* ending) {
+    return std::filesystem::path(scene).replace_extension(ending).string();
+  };
+  return {beside(".obj"), scene, beside(".script.json")};
+}
+
 std::string file_name_of(const std::string& name) {
   std::string safe;
   for (const char c : name) safe += std::isalnum((unsigned char)c) || c == '-' || c == '_' ? c : '-';

@@ -36,6 +36,9 @@ double whole_nanometres(double length);
 /// The name of a scene's file without its end. Error: a name that a scene cannot have, for its text says it.
 Result<std::string> stem_of_scene(const std::string& path);
 
+/// What an import of one organ writes: its mesh, the scene and the script beside it.
+std::vector<std::string> files_of_import(const std::string& scene);
+
 /// A name that a file may have everywhere: letters, digits, - and _ of `name`, others as -.
 std::string file_name_of(const std::string& name);
 

@@ -65,10 +65,8 @@ Errors check(const RecordArguments& arguments) {
     for (const std::string& flag : arguments.device_flags)
       errors.push_back({flag, "is of a device, and none is asked for", "give --igtl or --igtl-listen"});
   std::error_code ignored;
-  for (const char* other : {".mp4", ".avi", ".png", ".json", ".csv", ".html"})
-    if (std::filesystem::path(arguments.output).extension() == other)
-      errors.push_back(
-          {"--output", "got " + arguments.output + ", and a session is no " + other, "give a name that ends in .ctpm"});
+  if (!arguments.output.ends_with(".ctpm"))
+    errors.push_back({"--output", "got " + arguments.output + ", and a session's name ends in .ctpm", ""});
   if (const Result<Done> writable = output::check_writable(arguments.output); !writable)
     append(errors, writable);
   else if (!arguments.overwrite && std::filesystem::exists(arguments.output, ignored))

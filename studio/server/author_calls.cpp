@@ -9,6 +9,7 @@
 #include "scenes/schema.h"
 #include "studio/authoring/fit_scene.h"
 #include "studio/authoring/import_scene.h"
+#include "studio/authoring/scene_parts.h"
 #include "studio/loading/loaded_scene.h"
 #include "studio/output/files.h"
 #include "studio/server/call_table.h"
@@ -67,6 +68,19 @@ Result<std::string> check_scene(Parameters& parameters, const CallContext& conte
   const Result<scenes::SceneDraft> draft = scenes::read_draft(text, path);
   return "{\"errors\": " + errors_json(draft ? draft->problems.errors() : draft.errors()) +
          ", \"warnings\": " + errors_json(draft ? draft->scene.warnings : Errors{}) + "}";
+}
+
+Result<std::string> name_import(Parameters& parameters, const CallContext& context) {
+  const std::string wanted = parameters.text("path");
+  if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
+  const Result<std::string> name = context.folder.free_name(wanted, [](const std::string& scene) {
+    const std::vector<std::string> files = authoring::files_of_import(scene);
+    std::error_code ignored;
+    return std::any_of(files.begin(), files.end(),
+                       [&](const std::string& file) { return std::filesystem::exists(file, ignored); });
+  });
+  if (!name) return name.errors();
+  return "{\"path\": " + json_text(*name) + "}";
 }
 
 Result<std::string> import_mesh(Parameters& parameters, const CallContext& context) {

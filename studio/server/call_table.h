@@ -43,6 +43,7 @@ Result<std::string> check_scene(Parameters& parameters, const CallContext& conte
 Result<std::string> show_scene(Parameters& parameters, const CallContext& context);
 Result<std::string> close_scene(Parameters& parameters, const CallContext& context);
 Result<std::string> hold_scenes(Parameters& parameters, const CallContext& context);
+Result<std::string> name_import(Parameters& parameters, const CallContext& context);
 Result<std::string> import_mesh(Parameters& parameters, const CallContext& context);
 Result<std::string> fit_organ(Parameters& parameters, const CallContext& context);
 Result<std::string> show_schema(Parameters& parameters, const CallContext& context);

@@ -39,6 +39,7 @@ constexpr std::pair<const char*, Call> kCalls[] = {
     {"scene.show", show_scene},
     {"scene.close", close_scene},
     {"scene.hold", hold_scenes},
+    {"scene.import_name", name_import},
     {"scene.import", import_mesh},
     {"scene.fit", fit_organ},
     {"scene.presets", list_presets},

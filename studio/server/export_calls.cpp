@@ -129,17 +129,12 @@ Result<std::string> draw_session(Parameters& parameters, const CallContext& cont
 
 /// A name that is taken gets a number.
 Result<std::string> name_export(Parameters& parameters, const CallContext& context) {
-  const std::filesystem::path wanted(parameters.text("path"));
+  const std::string wanted = parameters.text("path");
   if (const Errors errors = parameters.errors(); !errors.empty()) return errors;
-  std::string name = wanted.generic_string();
-  for (int number = 2;; ++number) {
-    const Result<std::string> place = context.folder.place(name);
-    if (!place) return place.errors();
-    if (in_the_way_of(*place).empty())
-      return output::JsonWriter().begin_object().member("path", std::string_view(name)).end_object().text();
-    const std::string numbered = wanted.stem().string() + "-" + std::to_string(number) + wanted.extension().string();
-    name = (wanted.parent_path() / numbered).generic_string();
-  }
+  const Result<std::string> name =
+      context.folder.free_name(wanted, [](const std::string& place) { return !in_the_way_of(place).empty(); });
+  if (!name) return name.errors();
+  return "{\"path\": " + json_text(*name) + "}";
 }
 
 /// The picture of a moment, as `export --at-s` draws it.

@@ -67,6 +67,19 @@ Result<std::string> Folder::place(const std::string& relative) const {
   return (fs::path(*folder) / name).string();
 }
 
+Result<std::string> Folder::free_name(const std::string& wanted,
+                                      const std::function<bool(const std::string&)>& is_taken) const {
+  const fs::path path(wanted);
+  std::string name = path.generic_string();
+  for (int number = 2;; ++number) {
+    const Result<std::string> at = place(name);
+    if (!at) return at.errors();
+    if (!is_taken(*at)) return name;
+    const std::string numbered = path.stem().string() + "-" + std::to_string(number) + path.extension().string();
+    name = (path.parent_path() / numbered).generic_string();
+  }
+}
+
 std::vector<FolderEntry> Folder::list(const std::string& ending) const {
   std::vector<FolderEntry> entries;
   std::error_code failure;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,11 @@ class Folder {
 
   /// A place for a new file. Errors: it would lie outside; its folder does not exist; its name is empty or hidden.
   Result<std::string> place(const std::string& relative) const;
+
+  /// A name for new files: the wanted one, or the first with a number at its end (-2, -3) whose place is not taken.
+  /// Errors: those of place().
+  Result<std::string> free_name(const std::string& wanted,
+                                const std::function<bool(const std::string& place)>& is_taken) const;
 
   /// All files below the folder whose names end in `ending`, by path; hidden folders and links to folders are not
   /// entered. At most kMostListed.

@@ -180,7 +180,8 @@ Errors VideoWriter::check(const std::string& path, int width, int height, double
   std::error_code failed;
   const std::size_t asked_for = format_asked_for(path);
   if (asked_for == kFormats.size())
-    errors.push_back({path, "a video's name must end in .mp4 or .avi, or in / for a folder of PNG pictures", ""});
+    errors.push_back({path, "a video's name must end in .mp4 or .avi, or in / for a folder of PNG pictures",
+                      "the help of `export` lists the endings of pictures and shapes too"});
   else if (!kFormats[asked_for].is_pictures() && fs::is_directory(path, failed))
     errors.push_back({path, "is a folder", "give another name"});
   const auto is_good = [](int n) { return n > 0 && n <= 8192 && n % 2 == 0; };

@@ -16,7 +16,7 @@ import type { CameraView, Listing } from "./protocol";
 import { SceneEditor } from "./scene_editor";
 import { SceneList } from "./scene_list";
 import type { Shown } from "./stage_scene";
-import { command, isFileName, ofStep, verdictOf } from "./text";
+import { command, freePath, isFileName, ofStep, verdictOf } from "./text";
 import { kTurns, Viewer } from "./viewer";
 
 const kLookOnDisk = 2000; // [ms]
@@ -214,7 +214,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
         {isOver && <div class="drop-target">Drop it here to import it</div>}
       </div>
       <div class="time">
-        {desk && scene && doc && <Toolbar scene={scene} onSave={() => void save()}
+        {desk && scene && doc && <Toolbar scene={scene} taken={listing.scenes.map((entry) => entry.path)} onSave={() => void save()}
           onLoad={() => settle(doc.reread())} onKeep={() => settle(doc.keep())} onTry={() => onTry(path, doc.text, desk.viewer.seen())} onCopied={(copy) => {
             onChanged();
             open(copy);
@@ -223,7 +223,7 @@ export function Author({ connection, listing, onTry, onChanged }: {
       <aside class="side">
         {dropped ? (
           <div class="panel">
-            <ImportForm key={dropped.name} connection={connection} taken={listing.scenes.map((entry) => entry.path)} file={dropped} leftOut={leftOut} open={scene?.shown ? scene : null} onCancel={() => setDropped(null)} onDone={(result, isAdded) => {
+            <ImportForm key={dropped.name} connection={connection} file={dropped} leftOut={leftOut} open={scene?.shown ? scene : null} onCancel={() => setDropped(null)} onDone={(result, isAdded) => {
               setDropped(null);
               if (!isAdded) open(result.scene);
               setImported(result);
@@ -292,8 +292,9 @@ function ViewBar({ desk, item, modes, mode, onMode, onVersion }: { desk: Desk; i
 }
 
 /** What is done with the whole scene. */
-function Toolbar({ scene, onSave, onLoad, onKeep, onTry, onCopied, error }: {
+function Toolbar({ scene, taken, onSave, onLoad, onKeep, onTry, onCopied, error }: {
   scene: AuthorScene;
+  taken: string[]; // scenes that there are
   onSave: () => void;
   onLoad: () => void;
   onKeep: () => void;
@@ -326,7 +327,7 @@ function Toolbar({ scene, onSave, onLoad, onKeep, onTry, onCopied, error }: {
           <button type="button" class="main" disabled={tools === 0 || errors.length > 0} title={errors.length > 0 ? "Its text has errors" : tools === 0 ? "The scene has no tool yet" : "Nothing is recorded"} onClick={onTry}>Try it</button>
         </div>
       </div>
-      {isCopying && <CopyForm key={doc.path} doc={doc} onClose={() => setCopying(false)} onCopied={onCopied} />}
+      {isCopying && <CopyForm key={doc.path} doc={doc} taken={taken} onClose={() => setCopying(false)} onCopied={onCopied} />}
       {doc.onDisk === "same" ? error && <div class="conflict"><Problems error={error} /></div> : (
         <div class="conflict" role="alert">
           <p>{doc.onDisk === "gone" ? `${doc.path} is no longer there.` : `${doc.path} was changed on the disk since it was read here.`}</p>
@@ -343,9 +344,9 @@ function Toolbar({ scene, onSave, onLoad, onKeep, onTry, onCopied, error }: {
 }
 
 /** The text as it is now, under another name: beside the file, so that it finds the same meshes. */
-function CopyForm({ doc, onClose, onCopied }: { doc: SceneDocument; onClose: () => void; onCopied: (path: string) => void }) {
-  const [, folder, stem] = /^(.*\/)?(.*?)(?:\.json)?$/.exec(doc.path)!;
-  const [name, setName] = useState(`${stem}-2`), [error, setError] = useState<Error | null>(null);
+function CopyForm({ doc, taken, onClose, onCopied }: { doc: SceneDocument; taken: string[]; onClose: () => void; onCopied: (path: string) => void }) {
+  const folder = /^.*\//.exec(doc.path)?.[0];
+  const [name, setName] = useState(() => freePath(taken, doc.path).slice(folder?.length ?? 0, -".json".length)), [error, setError] = useState<Error | null>(null);
   const field = useRef<HTMLInputElement>(null);
   useEffect(() => field.current?.select(), []);
   const path = `${folder ?? ""}${name}.json`;

@@ -48,7 +48,7 @@ interface Checked {
 
 /** What the simulation depends on: a change of anything else does not load the scene again. */
 function simulatedPart(value: Json | undefined): string {
-  const { cameras, probes, name, task, tools, ...rest } = (value ?? {}) as { [key: string]: Json };
+  const { cameras, probes, forbidden, name, task, tools, ...rest } = (value ?? {}) as { [key: string]: Json };
   const shapes = listOf({ tools }, "tools").map(({ at_mm, pointing, facing, ...shape }) => shape);
   return JSON.stringify([rest, shapes]);
 }

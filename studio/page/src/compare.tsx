@@ -1,5 +1,6 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
+import { NumberInput } from "./fields";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { kEventOf } from "./place";
 import { firstOf, type Player } from "./player";
@@ -90,7 +91,7 @@ export function Compare({ connection, player, listing, comparison, onComparison,
             </div>
             <label class="field">
               <span>by hand: the trainee's clock shows more by [s]</span>
-              <input type="number" step="0.01" value={typed ?? (player.path ? "" : Number(player.offset.toFixed(3)))}
+              <NumberInput step="0.01" value={typed ?? (player.path ? "" : Number(player.offset.toFixed(3)))}
                 onInput={(e) => setTyped(e.currentTarget.value)} onBlur={() => setTyped(null)}
                 onChange={(e) => (player.setOffset(Number(e.currentTarget.value) || 0), setTyped(null))} />
             </label>

@@ -4,7 +4,7 @@ import { EditorState, Transaction } from "@codemirror/state";
 import { EditorView } from "@codemirror/view";
 import { findNodeAtLocation, getLocation, type JSONPath, parseTree } from "jsonc-parser";
 import type { Connection } from "./connection";
-import { dropDraft, type FileText, putDraft, putHistory, readDraft, readHistory } from "./drafts";
+import { dropDraft, type FileText, onDraftElsewhere, putDraft, putHistory, readDraft, readHistory } from "./drafts";
 import { applied, type Change, differences, findJson, type Json, parseJson, removeValue, setValue } from "./json_edit";
 import { editorOf, gesture, keptHistory, rangeOf, underlined, withHistory } from "./json_editor";
 import { CallFailed, type Problem } from "./protocol";
@@ -28,6 +28,8 @@ export class SceneDocument {
   onDisk: OnDisk = "same";
   private drafted: string | null = null; // the draft that it began with
   private keeping: ReturnType<typeof setTimeout> | null = null; // until the history is kept; null: it is
+  private isFollowing = false; // a text that another tab keeps
+  private isBehind = false; // what another tab made of the scene, while nobody sees this one
   private valid: Json | undefined;
   private parsed: { text: string; value: Json | undefined } | null = null;
 
@@ -47,6 +49,13 @@ export class SceneDocument {
     if (text !== saved) this.drafted = text;
     else dropDraft(path);
     addEventListener("pagehide", () => this.keepHistory());
+    onDraftElsewhere(() => this.path, (draft) => {
+      this.isBehind = document.hidden;
+      if (!this.isBehind) void this.follow(draft);
+    });
+    addEventListener("visibilitychange", () => {
+      if (this.isBehind && !document.hidden) this.isBehind = false, void this.follow(readDraft(this.path)?.text ?? null);
+    });
   }
 
   /** Reads a scene and the draft of it that this browser kept. A draft of another text than the file has by now stays one
@@ -188,6 +197,18 @@ export class SceneDocument {
     if (this.onDisk !== onDisk) this.onChange();
   }
 
+  /** Takes what another tab made of the same scene, as one step: its author has one text wherever they look. null: the other
+      tab saved it, or went back to its file. */
+  private async follow(draft: string | null): Promise<void> {
+    const file = draft === null ? await this.readFile() : readDraft(this.path)?.file;
+    if (!file || (draft === null && readDraft(this.path))) return; // it is gone, or it was changed again
+    this.isFollowing = true;
+    this.before = this.last = null;
+    this.setText(draft ?? file.text, ++this.gestures);
+    this.took(file);
+    this.isFollowing = false;
+  }
+
   /** From now on changes are those to this file. */
   private took(file: FileText): void {
     this.saved = file.text, this.revision = file.revision, this.onDisk = "same";
@@ -225,6 +246,7 @@ export class SceneDocument {
     this.view.dispatch({ selection: { anchor: node.offset, head: node.offset + node.length }, annotations: Transaction.addToHistory.of(false) });
     // The text scrolls, and not the page with it: in a narrow window it is below the picture.
     const { scrollDOM } = this.view;
+    scrollDOM.scrollLeft = 0;
     scrollDOM.scrollTop = this.view.lineBlockAt(node.offset).top - scrollDOM.clientHeight / 2;
   }
 
@@ -243,6 +265,7 @@ export class SceneDocument {
 
   /** Keeps the text as a draft at once, while it is none of the file's, and its history soon. */
   private remember(): void {
+    if (this.isFollowing) return; // the other tab may be further by now
     const { text, path, saved, revision } = this;
     if (text === saved) dropDraft(path);
     else putDraft(path, text, { text: saved, revision });

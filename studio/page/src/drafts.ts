@@ -44,6 +44,11 @@ export function putDraft(path: string, text: string, file: FileText): void {
   put("draft", path, text);
 }
 
+/** Tells when another tab of this browser keeps a draft of a scene, or drops it: null. */
+export function onDraftElsewhere(path: () => string, tell: (text: string | null) => void): void {
+  addEventListener("storage", ({ key, newValue }) => key === keyOf("draft", path()) && tell(newValue));
+}
+
 export function dropDraft(path: string): void {
   for (const kind of ["draft", "drafted"] as const) localStorage.removeItem(keyOf(kind, path));
 }

@@ -1,12 +1,14 @@
+import type { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { faultText } from "./compare";
 import type { Connection } from "./connection";
 import { download } from "./download";
+import { NumberInput } from "./fields";
 import { asSeen, isFree, type Look, lookParameters, lookWords } from "./look";
 import { Problems, Section, ShownCommand, Working } from "./parts";
 import type { Player } from "./player";
 import type { ComparisonResult } from "./protocol";
-import { bytes, command, newtons, seconds } from "./text";
+import { bytes, command, newtons, seconds, whyNot } from "./text";
 import { alignedText } from "./time_axis";
 import { valueAt } from "./timeline";
 
@@ -62,6 +64,7 @@ export interface ExportJob {
   progress: [number, number] | null; // null: none goes on
   result: Exported | null;
   error: Error | null;
+  isStopped: boolean; // by hand
   start(params: object): Promise<void>;
   cancel(): void;
   fail(error: Error): void;
@@ -70,24 +73,25 @@ export interface ExportJob {
 export function useExport(connection: Connection): ExportJob {
   const [progress, setProgress] = useState<[number, number] | null>(null);
   const [result, setResult] = useState<Exported | null>(null);
-  const [error, fail] = useState<Error | null>(null);
+  const [error, fail] = useState<Error | null>(null), [isStopped, setStopped] = useState(false);
   const stop = useRef<AbortController | null>(null);
   const start = async (params: object) => {
-    stop.current = new AbortController();
-    fail(null), setResult(null), setProgress([0, 1]);
+    const { signal } = (stop.current = new AbortController());
+    fail(null), setStopped(false), setResult(null), setProgress([0, 1]);
     try {
       setResult(await connection.call<Exported>("session.export", params,
-        { signal: stop.current.signal, progress: (done, total) => setProgress([done, total]) }));
+        { signal, progress: (done, total) => setProgress([done, total]) }));
     } catch (failure) {
-      fail(failure as Error);
+      if (signal.aborted) setStopped(true);
+      else fail(failure as Error);
     }
     setProgress(null);
   };
-  return { progress, result, error, start, cancel: () => stop.current?.abort(), fail };
+  return { progress, result, error, isStopped, start, cancel: () => stop.current?.abort(), fail };
 }
 
 /** A video of what is seen. */
-export function ExportForm({ connection, player, look, comparison, job: { progress, result, error, start, cancel, fail } }: {
+export function ExportForm({ connection, player, look, comparison, job: { progress, result, error, isStopped, start, cancel, fail } }: {
   connection: Connection;
   player: Player;
   look: Look;
@@ -152,12 +156,19 @@ export function ExportForm({ connection, player, look, comparison, job: { progre
     ...(number(from) ? ["--from-s", from] : []), ...words("--to-s", to, ""), ...words("--speed", speed, "1"), ...words("--fps", fps, "30"),
     ...words("--size", size, kSizes[0]), ...words("--overlay", overlay, "full"), ...words("--slow-at", slowAt, ""), ...words("--caption", caption.trim(), ""),
     ...(isDifferentShown ? ["--allow-diverged"] : []), ...lookWords(filmed));
-  const field = (label: string, value: string, set: (value: string) => void, type = "text") => (
-    <label class="field">
-      <span>{label}</span>
-      <input type={type} step="any" value={value} onInput={(e) => set(e.currentTarget.value)} />
-    </label>
-  );
+  const wrong = [
+    whyNot("The first moment", from, 0, Infinity, "s"), whyNot("The last moment", to, Math.max(0, number(from) ?? 0), Infinity, "s"),
+    whyNot("Times real speed", speed, 0.001, 1000), whyNot("Pictures", fps, 1, 240, "a second"),
+  ].filter(Boolean);
+  const field = (label: string, value: string, set: (value: string) => void, isNumber = false) => {
+    const Input = isNumber ? NumberInput : "input";
+    return (
+      <label class="field">
+        <span>{label}</span>
+        <Input step="any" value={value} onInput={(e: JSX.TargetedInputEvent<HTMLInputElement>) => set(e.currentTarget.value)} />
+      </label>
+    );
+  };
   const choice = (label: string, value: string, set: (value: string) => void, options: [string, string][]) => (
     <label class="field">
       <span>{label}</span>
@@ -175,15 +186,15 @@ export function ExportForm({ connection, player, look, comparison, job: { progre
       {field("file in the folder: .mp4, .avi", output, setOutput)}
       {isTaken && <p class="warning">{output} exists already; {unused.name} does not.</p>}
       <div class="pair">
-        {field("from [s]", from, (text) => (setFrom(text), goTo(kNoMoment)), "number")}
-        {field("to [s]", to, (text) => (setTo(text), goTo(kNoMoment)), "number")}
+        {field("from [s]", from, (text) => (setFrom(text), goTo(kNoMoment)), true)}
+        {field("to [s]", to, (text) => (setTo(text), goTo(kNoMoment)), true)}
       </div>
       <button type="button" disabled={!isThere} onClick={around}>1 s before {seconds(time, 2)} to 1 s after</button>
       {!isThere && <p class="hint">At this moment the {beside && isGhost ? "trainee" : "first session"} has not begun, or has ended. Another alignment brings both together{beside && !isGhost ? "; so does the expert as a ghost" : ""}.</p>}
       {beside && <p class="hint">These times are by the {isGhost ? "trainee" : "expert"}'s clock.</p>}
       <div class="pair">
-        {field("times real speed", speed, setSpeed, "number")}
-        {field("pictures a second", fps, setFps, "number")}
+        {field("times real speed", speed, setSpeed, true)}
+        {field("pictures a second", fps, setFps, true)}
       </div>
       {beside ? (
         <>
@@ -211,7 +222,9 @@ export function ExportForm({ connection, player, look, comparison, job: { progre
       <ShownCommand text={shown} />
       <div class="always-seen">
         {progress ? <Working what="exporting" done={progress[0]} total={progress[1]} onCancel={cancel} />
-          : <button type="button" class="main" disabled={!output || isTaken} onClick={() => void start(params)}>Export</button>}
+          : <button type="button" class="main" disabled={!output || isTaken || wrong.length > 0} onClick={() => void start(params)}>Export</button>}
+        {wrong.map((why) => <p key={why} class="warning" role="status">{why}.</p>)}
+        {isStopped && <p class="hint" role="status">Stopped; nothing was written.</p>}
         <Problems error={error} />
         {result && (
           <p class="good" role="status">{result.path}: {result.frames} frames, {result.codec}, {bytes(result.bytes)}, in {seconds(result.elapsed_s, 1)}; replay {result.same_as_recorded ? "same as recorded" : "DIFFERS"}{result.note && `; ${result.note}`}</p>

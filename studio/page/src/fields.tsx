@@ -1,5 +1,19 @@
+import type { JSX } from "preact";
 import { useRef } from "preact/hooks";
 import * as three from "three";
+
+/** A comma between digits is a decimal point: browsers of many languages drop it, and 1,5 would be 15. */
+function takeCommaAsPoint(event: JSX.TargetedInputEvent<HTMLInputElement>): void {
+  const text = event.data ?? "";
+  if (!/^[^.,]*,[^.,]*$/.test(text)) return;
+  event.preventDefault();
+  document.execCommand("insertText", false, text.replace(",", ".")); // as if it were typed: the browser can undo it
+}
+
+/** An input of a number, as the browser has it but for commas. */
+export function NumberInput(properties: JSX.IntrinsicElements["input"]) {
+  return <input {...properties} type="number" onBeforeInput={takeCommaAsPoint} />;
+}
 
 /** A number that the text holds: `onInput` while it is changed, `onDone` when that is over. */
 export function NumberField({ label, value, unit, step, least, hasOwnUnit = false, onInput, onDone }: {
@@ -17,7 +31,7 @@ export function NumberField({ label, value, unit, step, least, hasOwnUnit = fals
   return (
     <label class="number-field">
       <span>{label}{hasOwnUnit && ` [${unit}]`}</span>
-      <input type="number" step={step} value={shown} aria-label={`${label} [${unit}]`}
+      <NumberInput step={step} value={shown} aria-label={`${label} [${unit}]`}
         onInput={(e) => {
           const number = e.currentTarget.valueAsNumber;
           // Not by the input's own least: its arrow keys would count steps from there.

@@ -7,6 +7,7 @@ import { findJson, parseJson } from "./json_edit";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
 import { kAnchored } from "./stage_scene";
 import { command, millimetres, ofStep } from "./text";
+import { Tissue } from "./tissue";
 
 const kMostSpheres = 60000; // that the slider offers, as estimated
 
@@ -29,6 +30,7 @@ export function Filling({ connection, scene, chosen }: { connection: Connection;
   return (
     <>
       {sorted.map(([organ, i]) => organ.rig ? null : <OrganFilling key={`${scene.doc?.path} ${i}`} connection={connection} scene={scene} organ={i} name={String(organ.name ?? `organ ${i + 1}`)} />)}
+      {sorted.map(([organ, i]) => organ.rig ? null : <Tissue key={`${scene.doc?.path} ${i}`} connection={connection} scene={scene} organ={i} name={String(organ.name ?? `organ ${i + 1}`)} />)}
       <Cost scene={scene} />
       <ScatterOf connection={connection} scene={scene} />
     </>

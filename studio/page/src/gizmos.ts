@@ -23,7 +23,7 @@ const kClearance = 0.002; // between a tool and the surface that it was dragged 
 export function modesOf(item: Item | null): GizmoMode[] {
   if (!item?.place) return [];
   if (item.kind === "organ") return ["move", "turn", "size"];
-  if (item.shape === "scalpel" || item.shape === "ball") return ["move", "turn"];
+  if (item.shape === "scalpel" || item.shape === "ball" || item.shape === "plane") return ["move", "turn"];
   return item.shape === "sphere" || item.shape === "box" ? ["move", "size"] : ["move"];
 }
 

@@ -4,18 +4,13 @@ import * as three from "three";
 import type { AuthorScene, Finding } from "./author_scene";
 import { takenAlong } from "./belongings";
 import type { Connection } from "./connection";
+import { NumberInput } from "./fields";
 import { freeName, listOf, mmVector } from "./items";
 import { type Json, parseJson } from "./json_edit";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
-import { CallFailed, type CameraView, type Vector } from "./protocol";
-import { command, freePath } from "./text";
+import { CallFailed, type CameraView, type Preset, type Vector } from "./protocol";
+import { command, whyNot } from "./text";
 import { seesBox } from "./viewer";
-
-interface Preset {
-  name: string;
-  organ: string;
-  source: string;
-}
 
 export interface Imported {
   scene: string;
@@ -122,9 +117,8 @@ async function addOrgans(connection: Connection, open: AuthorScene, imported: Im
 }
 
 /** What is needed to make a scene of a mesh, and how far it is. */
-export function ImportForm({ connection, taken, file, leftOut, open, onCancel, onDone }: {
+export function ImportForm({ connection, file, leftOut, open, onCancel, onDone }: {
   connection: Connection;
-  taken: string[]; // scenes that there are
   file: File;
   leftOut: string[]; // files that came with it
   open: AuthorScene | null; // a scene to which the organ can be added
@@ -140,10 +134,11 @@ export function ImportForm({ connection, taken, file, leftOut, open, onCancel, o
   const [radius, setRadius] = useState("");
   const [labels, setLabels] = useState("");
   const [hole, setHole] = useState("");
-  const [scene, setScene] = useState(() => freePath(taken, /\.obj$/i.test(file.name) ? `${stem}-scene.json` : `${stem}.json`));
+  const [chosenScene, setScene] = useState<string | null>(null), [freeScene, setFreeScene] = useState("");
+  const scene = chosenScene ?? freeScene;
   const [isAdded, setAdded] = useState(false);
   const [progress, setProgress] = useState<[string, number] | null>(null);
-  const [error, setError] = useState<Error | null>(null);
+  const [error, setError] = useState<Error | null>(null), [isStopped, setStopped] = useState(false);
   const stop = useRef(new AbortController());
   const uploaded = useRef(""); // for as many tries as its author makes
   const takeBack = async () => {
@@ -162,10 +157,17 @@ export function ImportForm({ connection, taken, file, leftOut, open, onCancel, o
     };
   }, [connection, file]);
 
+  // Its mesh and its script need names too, of which the page knows nothing.
+  useEffect(() => {
+    connection.call<{ path: string }>("scene.import_name", { path: (isAdded ? folder : "") + (/\.obj$/i.test(file.name) ? `${stem}-scene.json` : `${stem}.json`) })
+      .then(({ path }) => setFreeScene(path.slice(isAdded ? folder.length : 0)), setError);
+  }, [connection, file, isAdded]);
+
   const tissue = presets.find((preset) => preset.name === organ);
   const target = isAdded ? folder + scene : scene, names = isMap ? labels.split(",").map((name) => name.trim()).filter(Boolean) : [], refused = holesOf(error);
+  const wrong = [whyNot("The radius", radius, 0.01, 100, "mm"), whyNot("The largest hole", hole, 0, 1e4, "mm")].filter(Boolean);
   const start = async (closed = hole) => {
-    setError(null), setHole(closed);
+    setError(null), setStopped(false), setHole(closed);
     const { signal } = (stop.current = new AbortController());
     try {
       if (!uploaded.current) {
@@ -184,7 +186,8 @@ export function ImportForm({ connection, taken, file, leftOut, open, onCancel, o
       onDone(imported, isAdded);
       return;
     } catch (failure) {
-      setError(signal.aborted ? new Error("Stopped; nothing was written.") : (failure as Error));
+      if (signal.aborted) setStopped(true);
+      else setError(failure as Error);
     }
     setProgress(null);
   };
@@ -217,10 +220,10 @@ export function ImportForm({ connection, taken, file, leftOut, open, onCancel, o
         </select>
       </label>
       <label class="field"><span>radius of the spheres [mm]; empty: as fine as holds 1 kHz here</span>
-        <input type="number" min="0.1" step="0.1" value={radius} onInput={(e) => setRadius(e.currentTarget.value)} />
+        <NumberInput step="0.1" value={radius} onInput={(e) => setRadius(e.currentTarget.value)} />
       </label>
       <label class="field"><span>largest hole that is closed [mm]; empty: a tenth of its size</span>
-        <input type="number" min="0" step="1" value={hole} onInput={(e) => setHole(e.currentTarget.value)} />
+        <NumberInput step="1" value={hole} onInput={(e) => setHole(e.currentTarget.value)} />
       </label>
       <label class="field"><span>scene to write</span>
         <input value={scene} onInput={(e) => setScene(e.currentTarget.value)} />
@@ -228,10 +231,12 @@ export function ImportForm({ connection, taken, file, leftOut, open, onCancel, o
       {progress ? <Working what={progress[0]} done={progress[1]} total={1} onCancel={() => stop.current.abort()} />
         : (
           <div class="buttons">
-            <button type="button" class="main" disabled={!organ} onClick={() => void start()}>Import</button>
+            <button type="button" class="main" disabled={!organ || !scene || wrong.length > 0} onClick={() => void start()}>Import</button>
             <button type="button" onClick={onCancel}>Back</button>
           </div>
         )}
+      {wrong.map((why) => <p key={why} class="warning" role="status">{why}.</p>)}
+      {isStopped && <p class="hint" role="status">Stopped; nothing was written.</p>}
       <Problems error={error} />
       {refused !== null && !progress && (
         <button type="button" class="main" onClick={() => void start(String(refused))}>Close holes up to {refused} mm and import</button>

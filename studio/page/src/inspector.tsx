@@ -9,6 +9,11 @@ import type { Viewer } from "./viewer";
 
 const kTurning = "In the picture a drag turns the view, and the wheel zooms.";
 
+const kWhatItDoes: Partial<Record<Item["kind"], string>> = {
+  obstacle: "Tissue touches it and does not enter it; tools pass through it.",
+  zone: "Where no tool should be: comparisons count a tip that is in it. Nothing that is simulated depends on it.",
+};
+
 /** What the selected thing is, in numbers. */
 export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScene; item: Item | null; viewer: Viewer; onRemove: ((item: Item) => void) | null }) {
   const { doc } = scene;
@@ -41,6 +46,8 @@ export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScen
           <input value={item.name} onInput={(e) => e.currentTarget.value && preview([[at("name"), e.currentTarget.value]])} onChange={done} />
         </label>
       )}
+      {kWhatItDoes[item.kind] && <p class="hint">{kWhatItDoes[item.kind]}</p>}
+      {item.shape === "mesh" && <p class="hint">It stands where its mesh file says, which the text names.</p>}
       {item.kind === "organ" && (
         <>
           {vector("place of the mesh's origin", ["at_mm"], [0, 0, 0])}

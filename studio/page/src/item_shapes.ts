@@ -6,7 +6,7 @@ const kUnitBall = new three.SphereGeometry(1, 28, 18);
 const kUnitBox = new three.BoxGeometry(1, 1, 1);
 const kUnitEdges = new three.EdgesGeometry(kUnitBox);
 const kUnitSquare = new three.PlaneGeometry(1, 1);
-export const kItemColours: Record<Item["kind"], number> = { organ: 0xe7eaee, anchor: 0x7cc0ff, tool: 0xffc857, probe: 0x7fd6a0, camera: 0xd9c7ff };
+export const kItemColours: Record<Item["kind"], number> = { organ: 0xe7eaee, anchor: 0x7cc0ff, tool: 0xffc857, probe: 0x7fd6a0, obstacle: 0x9fb0b8, zone: 0xff8a80, camera: 0xd9c7ff };
 
 function glassy(colour: number, opacity: number): three.Material {
   return new three.MeshPhongMaterial({ color: colour, transparent: true, opacity, depthWrite: false, side: three.DoubleSide });

@@ -5,18 +5,21 @@ import type { Json } from "./json_edit";
 import { orientationOf } from "./pose";
 import type { SceneView, Vector } from "./protocol";
 
-export type ItemKind = "organ" | "anchor" | "tool" | "probe" | "camera";
+export type ItemKind = "organ" | "anchor" | "tool" | "probe" | "obstacle" | "zone" | "camera";
+
+/** The list of a scene that has what is not of an organ. */
+export const kListOf: Record<Exclude<ItemKind, "organ" | "anchor">, string> = { tool: "tools", probe: "probes", obstacle: "obstacles", zone: "forbidden", camera: "cameras" };
 
 export interface Item {
   key: string; // its path, as text
   path: JSONPath;
   kind: ItemKind;
   name: string;
-  shape: "organ" | "ball" | "scalpel" | "pin" | "probe" | "camera" | "sphere" | "box" | "plane" | "lowest";
+  shape: "organ" | "ball" | "scalpel" | "pin" | "probe" | "camera" | "sphere" | "box" | "plane" | "lowest" | "mesh";
   index: number; // in its list
   place: three.Vector3 | null; // null: it has none, or the text does not say it well
   turn: three.Quaternion; // of organs, tools, planes and cameras
-  size: three.Vector3; // of a box anchor its sides; of a sphere anchor or a ball, three times its radius; of an organ, its scale
+  size: three.Vector3; // of a box its sides; of a sphere or a ball, three times its radius; of an organ, its scale
   offset: three.Vector3; // from its place to its handle: an organ's place is that of its mesh's origin
   isWritten: boolean; // the text says the place; else it is where the hand takes it up
 }
@@ -92,6 +95,20 @@ export function itemsOf(scene: Json | undefined, view: SceneView | null, middles
     items.push({
       key: path.join("/"), path, kind, shape, name, place, index: Number(path.at(-1)), turn: new three.Quaternion(), size: new three.Vector3(), offset: new three.Vector3(), isWritten: true, ...more,
     });
+  /** A ball, a box or a plane that `fields` are; its shape, or null: none of these. */
+  const addRegion = (path: JSONPath, kind: ItemKind, fields: Fields, nameOf: (what: string) => string): Item["shape"] | null => {
+    if (isFields(fields.sphere)) {
+      const radius = lengthOf(fields.sphere.radius_mm, 0);
+      add(path, kind, "sphere", nameOf("ball"), metresOf(fields.sphere.centre_mm), { size: new three.Vector3(radius, radius, radius) });
+    } else if (isFields(fields.box)) {
+      const least = metresOf(fields.box.min_mm), most = metresOf(fields.box.max_mm);
+      add(path, kind, "box", nameOf("box"), least && most && least.clone().add(most).multiplyScalar(0.5), least && most ? { size: most.clone().sub(least) } : {});
+    } else if (isFields(fields.plane)) {
+      const normal = numbersOf(fields.plane.normal) as Vector | null;
+      add(path, kind, "plane", nameOf("plane"), metresOf(fields.plane.point_mm), { turn: orientationOf(normal && Math.hypot(...normal) > 0 ? normal : [0, 0, 1]) });
+    } else return null;
+    return items.at(-1)!.shape;
+  };
   const above = view ? aboveOrgans(view) : new three.Vector3();
   listOf(scene, "organs").forEach((organ, i) => {
     const name = textOf(organ.name, `organ ${i + 1}`);
@@ -102,18 +119,7 @@ export function itemsOf(scene: Json | undefined, view: SceneView | null, middles
     const called = (what: string, k: number) => `${what} ${k + 1}${listOf(scene, "organs").length > 1 ? ` of ${name}` : ""}`;
     listOf(organ, "anchors").forEach((anchor, k) => {
       const path = ["organs", i, "anchors", k];
-      if (isFields(anchor.sphere)) {
-        const radius = lengthOf(anchor.sphere.radius_mm, 0);
-        add(path, "anchor", "sphere", called("ball", k), metresOf(anchor.sphere.centre_mm), { size: new three.Vector3(radius, radius, radius) });
-      } else if (isFields(anchor.box)) {
-        const least = metresOf(anchor.box.min_mm), most = metresOf(anchor.box.max_mm);
-        add(path, "anchor", "box", called("box", k), least && most && least.clone().add(most).multiplyScalar(0.5), least && most ? { size: most.clone().sub(least) } : {});
-      } else if (isFields(anchor.plane)) {
-        const normal = numbersOf(anchor.plane.normal) as Vector | null;
-        add(path, "anchor", "plane", called("plane", k), metresOf(anchor.plane.point_mm), { turn: orientationOf(normal && Math.hypot(...normal) > 0 ? normal : [0, 0, 1]) });
-      } else if (anchor.lowest_mm !== undefined) {
-        add(path, "anchor", "lowest", called("lowest part", k), null);
-      }
+      if (!addRegion(path, "anchor", anchor, (what) => called(what, k)) && anchor.lowest_mm !== undefined) add(path, "anchor", "lowest", called("lowest part", k), null);
     });
   });
   let waiting = 0; // tools so far that a hand takes up
@@ -133,6 +139,11 @@ export function itemsOf(scene: Json | undefined, view: SceneView | null, middles
     });
   });
   listOf(scene, "probes").forEach((probe, i) => add(["probes", i], "probe", "probe", textOf(probe.name, `probe ${i + 1}`), metresOf(probe.at_mm)));
+  for (const kind of ["obstacle", "zone"] as const)
+    listOf(scene, kListOf[kind]).forEach((fields, i) => {
+      const path = [kListOf[kind], i], name = textOf(fields.name, `${kind} ${i + 1}`);
+      if (!addRegion(path, kind, fields, () => name)) add(path, kind, "mesh", name, null);
+    });
   listOf(scene, "cameras").forEach((camera, i) => add(["cameras", i], "camera", "camera", textOf(camera.name, `camera ${i + 1}`), metresOf(camera.eye_mm), { turn: lookOf(camera) }));
   return items;
 }
@@ -168,13 +179,14 @@ function kept(item: Item, offset: three.Vector3): Values {
   return after.some((x, i) => x !== before[i]) ? placed(item, place) : [];
 }
 
-/** Of a tool that was turned, with its place, or of an organ. */
+/** Of a tool that was turned, with its place, of an organ or of a plane. */
 export function turned(item: Item, turn: three.Quaternion): Values {
   if (item.kind === "organ") {
     const { x, y, z } = new three.Euler().setFromQuaternion(turn, "ZYX");
     const degrees = [x, y, z].map((angle) => Math.round(100 * three.MathUtils.radToDeg(angle)) / 100 + 0);
     return [[[...item.path, "turn_deg"], degrees], ...kept(item, item.offset.clone().applyQuaternion(item.turn.clone().invert()).applyQuaternion(turn))];
   }
+  if (item.shape === "plane") return [[[...item.path, "plane", "normal"], direction(new three.Vector3(0, 0, -1).applyQuaternion(turn))]];
   const values: Values = item.isWritten ? [] : [[[...item.path, "at_mm"], mmVector(item.place!)]];
   values.push([[...item.path, "pointing"], direction(new three.Vector3(0, 0, -1).applyQuaternion(turn))]);
   if (item.shape === "scalpel") values.push([[...item.path, "facing"], direction(new three.Vector3(1, 0, 0).applyQuaternion(turn))]);
@@ -189,7 +201,7 @@ function boxed(item: Item, place: three.Vector3, size: three.Vector3): Values {
   ];
 }
 
-/** Of an anchor or an organ that got another size. */
+/** Of a ball, a box or an organ that got another size. */
 export function sized(item: Item, size: three.Vector3): Values {
   if (item.kind === "organ") {
     const scale = three.MathUtils.clamp(Math.round(1e4 * size.x) / 1e4, 0.001, 1000);

@@ -4,18 +4,21 @@ import type { JSONPath } from "jsonc-parser";
 import type { AuthorScene } from "./author_scene";
 import { onSurface } from "./gizmos";
 import { cameraValues } from "./inspector";
-import { freeName, type Item, type ItemKind, itemsOf, listOf, mm, mmVector } from "./items";
+import { direction, type Fields, freeName, type Item, type ItemKind, itemsOf, kListOf, listOf, mm, mmVector } from "./items";
 import { applied, type Json, parseJson, setValue } from "./json_edit";
+import type { SceneView } from "./protocol";
 import { alongRow, rowsOf } from "./rows";
 import type { Viewer } from "./viewer";
 
-const kTitles: [ItemKind, string][] = [["organ", "Organs"], ["anchor", "Anchors"], ["tool", "Tools"], ["probe", "Probes"], ["camera", "Cameras"]];
+const kTitles: [ItemKind, string][] = [["organ", "Organs"], ["anchor", "Anchors"], ["tool", "Tools"], ["probe", "Probes"], ["obstacle", "Obstacles"], ["zone", "Forbidden zones"], ["camera", "Cameras"]];
 
 /** What can be added, and what it begins as. */
 const kNew: Record<Exclude<ItemKind, "organ">, [string, string][]> = {
   anchor: [["sphere", "ball"], ["box", "box"]],
   tool: [["ball", "ball"], ["scalpel", "scalpel"]],
   probe: [["probe", "probe"]],
+  obstacle: [["plane", "table"], ["box", "block"]],
+  zone: [["sphere", "ball"], ["box", "box"]],
   camera: [["camera", "this view"]],
 };
 
@@ -32,22 +35,38 @@ function middleOf(scene: AuthorScene, viewer: Viewer): { place: three.Vector3; n
   return scene.stage?.meet(ray) ?? { place: middle, normal: new three.Vector3(...view.up), organ: 0 };
 }
 
+const kBlock = 0.02; // height of a box that organs stand on [m]
+
+/** What organs stand on as they are shown: a table, or a box as wide as they are. */
+function ground({ view }: { view: SceneView }, shape: string): Fields {
+  const up = new three.Vector3(...view.up), least = new three.Vector3(...view.least), most = new three.Vector3(...view.most);
+  const corner = (of: (x: number) => boolean) => new three.Vector3(...up.toArray().map((x, i) => (of(x) ? least : most).getComponent(i))), lowest = corner((x) => x > 0);
+  if (shape === "plane") return { plane: { point_mm: mmVector(least.clone().add(most).multiplyScalar(0.5).projectOnPlane(up).addScaledVector(up, lowest.dot(up))), normal: direction(up) } };
+  // Boxes lie along the axes: this one is below the side that faces down most.
+  const axis = up.toArray().reduce((best, x, i, all) => (Math.abs(x) > Math.abs(all[best]) ? i : best), 0);
+  const below = up.getComponent(axis) > 0 ? [least.getComponent(axis) - kBlock, least.getComponent(axis)] : [most.getComponent(axis), most.getComponent(axis) + kBlock];
+  return { box: { min_mm: mmVector(least.setComponent(axis, below[0])), max_mm: mmVector(most.setComponent(axis, below[1])) } };
+}
+
 /** Adds a thing where the middle of the picture meets the surface. Returns its key. */
 export function addItem(scene: AuthorScene, viewer: Viewer, kind: Exclude<ItemKind, "organ">, shape: string): string {
   const doc = scene.doc!, value = doc.value;
   const { place, normal, organ } = middleOf(scene, viewer);
   const radius = scene.stage?.organSpheres[organ]?.radius ?? 0.004;
   let path: JSONPath, entry: Json;
+  const reach = 4 * radius, away = new three.Vector3(reach, reach, reach);
+  const region: Fields = shape === "sphere" ? { sphere: { centre_mm: mmVector(place), radius_mm: mm(reach) } }
+    : { box: { min_mm: mmVector(place.clone().sub(away)), max_mm: mmVector(place.clone().add(away)) } };
   if (kind === "anchor") {
     path = ["organs", organ, "anchors", listOf(listOf(value, "organs")[organ], "anchors").length];
-    const reach = 4 * radius, away = new three.Vector3(reach, reach, reach);
-    entry = shape === "sphere" ? { sphere: { centre_mm: mmVector(place), radius_mm: mm(reach) } }
-      : { box: { min_mm: mmVector(place.clone().sub(away)), max_mm: mmVector(place.clone().add(away)) } };
+    entry = region;
   } else {
-    const list = listOf(value, `${kind}s`);
-    path = [`${kind}s`, list.length];
-    entry = { name: freeName(list, kind === "tool" ? shape : kind) };
-    if (shape === "ball") Object.assign(entry, { kind: "ball", radius_mm: mm(2.5 * radius) });
+    const list = listOf(value, kListOf[kind]);
+    path = [kListOf[kind], list.length];
+    entry = { name: freeName(list, kind === "tool" ? shape : shape === "plane" ? "table" : kind === "obstacle" ? "block" : kind) };
+    if (kind === "obstacle") Object.assign(entry, ground(scene.shown!, shape));
+    if (kind === "zone") Object.assign(entry, region);
+    if (kind === "tool" && shape === "ball") Object.assign(entry, { kind: "ball", radius_mm: mm(2.5 * radius) });
     if (shape === "scalpel") Object.assign(entry, { kind: "scalpel", blade_length_mm: 40 });
     if (kind === "probe") Object.assign(entry, { at_mm: mmVector(place) });
     if (kind === "camera") for (const [key, field] of cameraValues([], viewer)) Object.assign(entry, { [key[0]]: field! });

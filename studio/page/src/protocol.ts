@@ -6,6 +6,13 @@ export const kOtherVersion = 4001; // the code of a WebSocket that the program c
 
 export type Vector = [number, number, number];
 
+/** A tissue that a scene can name. */
+export interface Preset {
+  name: string;
+  organ: string;
+  source: string; // of its values
+}
+
 export interface Problem {
   where: string;
   message: string;

@@ -8,7 +8,7 @@ export function rowsOf(items: Item[]): Item[][] {
   const rows: Item[][] = [];
   for (const item of items) {
     const last = rows.at(-1)?.[0];
-    const goesOn = last?.shape === "sphere" && item.shape === "sphere" && last.path[1] === item.path[1] && last.size.x === item.size.x;
+    const goesOn = last?.kind === "anchor" && item.kind === "anchor" && last.shape === "sphere" && item.shape === "sphere" && last.path[1] === item.path[1] && last.size.x === item.size.x;
     if (goesOn) rows.at(-1)!.push(item);
     else rows.push([item]);
   }

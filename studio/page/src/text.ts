@@ -37,6 +37,12 @@ export function freePath(taken: string[], path: string): string {
   for (let i = 1, free = path; ; free = `${stem}-${++i}${ending}`) if (!taken.includes(free)) return free;
 }
 
+/** Why a number that was typed is none that its field takes; empty: it is one, or the field is empty. */
+export function whyNot(name: string, typed: string, least: number, most: number, unit = ""): string {
+  const number = Number(typed), limits = most === Infinity ? `at least ${least}` : `from ${least} to ${most}`;
+  return typed === "" || (least <= number && number <= most) ? "" : `${name}: ${limits} ${unit}`.trimEnd();
+}
+
 /** How far a session fell behind real time. */
 export function behind(atEnd: number, atMost: number): string {
   return atMost > 0 ? `${seconds(atEnd)} at the end, ${seconds(atMost)} at most` : "never";

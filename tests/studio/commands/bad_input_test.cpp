@@ -228,7 +228,9 @@ TEST_F(BadInput, AnOutputFolderThatDoesNotExist) {
       0);
   refuse({"import", kShipped + "organs/liver.obj", "-o", "a.ctpm/such/a.json"}, {"a.ctpm/such", "cannot be made"});
   refuse({"record", kShipped + "skin.json", "-o", "no/such/a.ctpm"}, {"no/such"});
-  refuse({"record", kShipped + "skin.json", "-o", "a.mp4"}, {"--output: error: got a.mp4", "ends in .ctpm"});
+  for (const char* name : {"a.mp4", "a.txt", "a"})
+    refuse({"record", kShipped + "skin.json", "-o", name}, {std::string("--output: error: got ") + name, "in .ctpm"});
+  refuse({"export", "a.ctpm", "-o", "a.gif"}, {"a.gif: error", ".mp4", "shapes too"});
   refuse({"preview", kShipped + "skin.json", "-o", "no/such/a.png"}, {"no/such"});
   refuse({"export", "a.ctpm", "-o", "no/such/a.mp4"}, {"no/such"});
   refuse({"replay", "a.ctpm", "--csv", "no/such/a.csv"}, {"no/such"});

@@ -50,7 +50,7 @@ step(`a mesh of ${kTriangles} triangles is imported, and an import that is stopp
   await button("Import", "aside").click();
   await page.waitForFunction(() => /importing [1-9]/.test(document.querySelector("aside .working")?.textContent ?? ""));
   await button("cancel", "aside").click();
-  await page.waitForSelector("aside .problems:has-text('Stopped')");
+  await page.waitForSelector("aside .hint:has-text('Stopped')");
   console.log(`author: an import of ${kTriangles} triangles was stopped ${Date.now() - started} ms after it was dropped`);
   // What was uploaded is there for another try, until its author goes back.
   const left = () => readdirSync(folder).filter((name) => name.startsWith("large"));
@@ -70,7 +70,8 @@ step(`a mesh of ${kTriangles} triangles is imported, and an import that is stopp
 
 step("the next import of that mesh is proposed a name that nothing has", async () => {
   await drop("large.obj", "");
-  assert.equal(await page.locator("aside label:has-text('scene to write') input").inputValue(), "large-scene-2.json");
+  const name = page.locator("aside label:has-text('scene to write') input");
+  assert.equal(await until(() => name.inputValue(), (proposed) => proposed !== ""), "large-scene-2.json");
   await button("Back", "aside").click();
 });
 
@@ -446,7 +447,13 @@ step("each label that is chosen of a segmentation becomes an organ, also of a sc
   const before = await text();
   await page.setInputFiles(".pick input", join(paths.source, "tests", "importers", "maps", "names.seg.nrrd"));
   await page.click("aside label:has-text('an organ of')");
-  await page.locator("aside .field:has-text('radius') input").fill("4");
+  const radius = page.locator("aside .field:has-text('radius') input");
+  await radius.fill("0");
+  await page.waitForSelector("aside .warning:has-text('The radius: from 0.01 to 100 mm')");
+  assert.ok(await button("Import", "aside").isDisabled());
+  await radius.fill("");
+  await radius.pressSequentially("4,0"); // as a decimal point is written in many countries
+  assert.equal(await radius.inputValue(), "4.0");
   await button("Import", "aside").click();
   await page.waitForSelector("aside .problems:has-text('choose one of left_kidney, stone')");
   assert.ok(existsSync(join(folder, "names.seg.nrrd")), "for another try");
@@ -468,7 +475,7 @@ step("an upload goes with its page, also before the program was asked to import 
   await page.evaluate(() => {
     const send = WebSocket.prototype.send;
     WebSocket.prototype.send = function (message) {
-      if (!String(message).includes("scene.import")) send.call(this, message);
+      if (!String(message).includes('"scene.import"')) send.call(this, message);
     };
   });
   await drop("gone.obj", largeMesh(2000, 0.1));

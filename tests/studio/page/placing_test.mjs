@@ -122,7 +122,7 @@ step("a tool stands where it was dragged to, and is taken up there", async () =>
 });
 
 step("a box anchor gets another size by its cubes", async () => {
-  await button("+ box", ".objects").click();
+  await page.locator(".objects section:has(h2:text-is(\"Anchors\")) button:text-is(\"+ box\")").click();
   await settled();
   const before = (await scene()).organs[0].anchors.at(-1).box;
   await button("size").click();
@@ -315,6 +315,79 @@ step("a camera is the view that was orbited to", async () => {
   assert.notDeepEqual(again.eye_mm, made.eye_mm);
   const drawn = ctpm(folder, "preview", kScene, "-o", "camera.png", "--camera", "camera");
   assert.equal(drawn.code, 0, drawn.err);
+});
+
+step("an organ stands on a table or a block that is added, and a forbidden zone is where it is dragged", async () => {
+  const before = await text(), section = (title) => page.locator(`.objects section:has(h2:text-is("${title}"))`);
+  const lowest = Math.min(...readFileSync(join(folder, "organs/kidney.obj"), "utf8").split("\n").filter((line) => line.startsWith("v ")).map((line) => Number(line.split(/\s+/)[3])));
+  await section("Obstacles").locator("button:text-is('+ table')").click();
+  await settled();
+  const [table] = (await scene()).obstacles;
+  assert.deepEqual([table.name, table.plane.normal], ["table", [0, 0, 1]]);
+  assert.ok(Math.abs(table.plane.point_mm[2] - lowest) < 1, `${table.plane.point_mm} below ${lowest}`);
+  await picture(page, "author-table");
+  // A plane is turned by its rings, and by its numbers.
+  await button("turn").click();
+  const [right, up] = [page.locator("#panel .vector:has-text('normal') input").first(), page.locator("#panel .vector:has-text('normal') input").nth(2)];
+  await right.fill("");
+  await right.pressSequentially("0,5"); // as a decimal point is written in many countries
+  await right.press("Tab");
+  assert.deepEqual((await scene()).obstacles[0].plane.normal, [0.5, 0, 1]);
+  assert.equal(await up.inputValue(), "1");
+  await page.locator(".remove").click();
+  assert.ok(!((await scene()).obstacles?.length > 0));
+  await section("Obstacles").locator("button:text-is('+ block')").click();
+  await settled();
+  const { box } = (await scene()).obstacles[0];
+  assert.ok(Math.abs(box.max_mm[2] - lowest) < 1 && box.max_mm[2] - box.min_mm[2] === 20, JSON.stringify(box));
+  await picture(page, "author-block");
+  await section("Forbidden zones").locator("button:text-is('+ ball')").click();
+  const [zone] = (await scene()).forbidden;
+  assert.ok(fromMesh(zone.sphere.centre_mm) < 4, JSON.stringify(zone));
+  await drag(await centreOf(handle("zone")), { x: 60, y: 10 });
+  const [moved] = (await scene()).forbidden;
+  assert.ok(fromMesh(moved.sphere.centre_mm) < 4 && moved.sphere.centre_mm[0] !== zone.sphere.centre_mm[0], JSON.stringify(moved));
+  await settled();
+  await picture(page, "author-zone");
+  assert.deepEqual(await outOfReach(page), []);
+  await save();
+  await write(before);
+  await save();
+});
+
+step("what an organ and its layers are made of is chosen", async () => {
+  const before = await text(), tissues = page.locator('#panel section:has(h2:text-is("kidney: its tissue")) select'), depths = page.locator("#panel .layer input");
+  const organ = async () => (await scene()).organs[0], old = (await organ()).layers;
+  assert.equal(old.length, 1);
+  await page.click("#tab-filling");
+  assert.deepEqual(await tissues.first().locator("option").allInnerTexts(), (await studio.call("scene.presets", {})).map(({ name }) => name));
+  assert.deepEqual(await tissues.evaluateAll((all) => all.map(({ value }) => value)), ["kidney", "kidney"]);
+  assert.ok((await organ()).material.stiffness_scale > 0);
+  await tissues.first().selectOption("liver");
+  assert.deepEqual((await organ()).material, { preset: "liver", prestrain: -0.018 }, "a fit of another tissue is none of this one; how tense it lies stays");
+  await page.waitForSelector("#panel .hint:has-text('is not fitted')");
+  await tissues.nth(1).selectOption("spleen");
+  assert.deepEqual((await organ()).layers[0], { to_depth_mm: 12, material: { preset: "spleen", prestrain: 0.002 } });
+  await depths.first().fill("3");
+  await depths.first().press("Tab");
+  await button("+ layer of tissue", "#panel").click();
+  await tissues.nth(2).selectOption("skin");
+  await depths.nth(1).fill("10.5");
+  await depths.nth(1).press("Tab");
+  assert.deepEqual((await organ()).layers.map((layer) => [layer.to_depth_mm, layer.material.preset]), [[3, "spleen"], [10.5, "skin"]]);
+  await settled();
+  await depths.nth(1).fill("60");
+  await page.waitForSelector(".verdict.bad");
+  assert.match(await page.locator(".author .side").innerText(), /deeper than the organ/);
+  await depths.nth(1).fill("10.5");
+  await page.waitForSelector(".verdict.good");
+  await picture(page, "author-tissue");
+  await save();
+  for (let i = 0; i < 2; ++i) await page.locator("#panel .layer .remove").first().click();
+  assert.equal((await organ()).layers, undefined);
+  await write(before);
+  await save();
+  await page.click("#tab-place");
 });
 
 step("comments stay where they are when things are dragged, added and removed", async () => {

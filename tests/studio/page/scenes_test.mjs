@@ -119,6 +119,42 @@ step("who removes a scene hears what goes and what stays, and gets it back at on
   assert.equal(await text(), before);
 });
 
+step("two tabs of a browser have one text of a scene, whoever of them changes, undoes or saves it", async () => {
+  const before = onDisk(), name = (text) => before.replace('"name": "kidney"', `"name": "${text}"`);
+  const top = (text) => text.slice(0, 80); // what the editor draws of it
+  const other = await page.context().newPage();
+  await other.goto(studio.address);
+  await other.click("header nav button:has-text('Author')");
+  await other.click(".scenes button:has(span:text-is('kidney'))");
+  const there = authorOf(() => other, () => folder, "kidney.json");
+  const shows = (tab, text) => tab.waitForFunction((wanted) => document.querySelector(".editor").shadowRoot.querySelector(".cm-content").innerText.startsWith(wanted), top(text));
+  const says = (tab, verdict) => tab.waitForFunction((ending) => document.querySelector(".verdict").textContent.endsWith(ending), verdict);
+  await there.settled();
+  await there.write(name("theirs"));
+  await shows(page, name("theirs"));
+  await says(page, ", not saved");
+  await page.bringToFront();
+  await write(name("mine"));
+  await shows(other, name("mine"));
+  // What the other tab did is a step of the history here.
+  for (const text of [name("theirs"), before]) {
+    await page.click(".author button:text-is('Undo')");
+    await shows(page, text);
+    await shows(other, text);
+  }
+  await says(other, ", saved");
+  await write(name("saved"));
+  await shows(other, name("saved"));
+  await page.keyboard.press("Control+s");
+  for (const tab of [page, other]) await says(tab, ", saved");
+  assert.equal(onDisk(), name("saved"));
+  await other.close();
+  await page.click(".author button:text-is('Undo')");
+  await page.keyboard.press("Control+s");
+  await says(page, ", saved");
+  assert.equal(onDisk(), before);
+});
+
 step("a place that is taken, and a scene that is open elsewhere, stay as they are, and it is said", async () => {
   await more("skin-2").click();
   await button("Remove…", ".scene-form").click();

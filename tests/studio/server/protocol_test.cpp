@@ -84,6 +84,7 @@ TEST(Protocol, NoCallReachesAFileOutsideOfTheFolder) {
       {"session.draw", "expert", ".ctpm", {{"stage", 0}}},
       {"notes.read", "path", ".ctpm", none},
       {"notes.write", "path", ".ctpm", {{"revision", "none"}, {"notes", nlohmann::json::array()}}},
+      {"scene.import_name", "path", ".json", none},
       {"scene.import", "mesh", ".obj", {{"scene", "new.json"}, {"radius_m", 0.006}}},
       {"scene.import", "scene", ".json", {{"mesh", "own.obj"}, {"radius_m", 0.006}}},
       {"scene.show", "path", ".json", {{"stage", 3}}},

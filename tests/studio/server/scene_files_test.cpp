@@ -52,6 +52,19 @@ json removal_of(SocketClient& client, const std::string& path) {
   return answer.value("result", json());
 }
 
+TEST_F(SceneFilesTest, TheNameOfferedForAnImportIsFreeForItsMeshAndItsScriptToo) {
+  const Serving serving(folder_);
+  SocketClient client(serving);
+  const auto offered = [&](const std::string& path) { return client.call("scene.import_name", {{"path", path}}); };
+  EXPECT_EQ(offered("new.json")["result"]["path"], "new.json");
+  EXPECT_EQ(offered("liver.json")["result"]["path"], "liver-2.json");
+  EXPECT_EQ(offered("organs/liver.json")["result"]["path"], "organs/liver-2.json") << "its mesh is there";
+  write("new.script.json", "{}");
+  write("new-2.obj", "");
+  EXPECT_EQ(offered("new.json")["result"]["path"], "new-3.json");
+  EXPECT_TRUE(offered("../new.json").contains("errors"));
+}
+
 TEST_F(SceneFilesTest, WhatNamesAScenePathNamesItAnewOnceItIsRenamed) {
   const std::string scene = read("kidney.json"), script = read("kidney.script.json");
   const Serving serving(folder_);

@@ -1,0 +1,59 @@
+// What an organ is made of: its tissue, and that of its layers from the skin inwards.
+import type { JSONPath } from "jsonc-parser";
+import { useEffect, useState } from "preact/hooks";
+import type { AuthorScene } from "./author_scene";
+import type { Connection } from "./connection";
+import { NumberField } from "./fields";
+import { type Fields, isFields, listOf } from "./items";
+import type { Json } from "./json_edit";
+import { Section } from "./parts";
+import type { Preset } from "./protocol";
+
+const kOwn = ""; // a material of its author's own values
+
+const materialOf = (fields: Fields): Fields => (isFields(fields.material) ? fields.material : {});
+const presetOf = (fields: Fields): string => String(materialOf(fields).preset ?? kOwn);
+
+/** A material of that preset: what was fitted or set for another one is not its own, but how tense it lies in the body is. */
+function materialAs(preset: string, before: Fields): Json {
+  return { preset, ...(before.prestrain === undefined ? {} : { prestrain: before.prestrain }) };
+}
+
+/** `organ`: its place in the list. */
+export function Tissue({ connection, scene, organ, name }: { connection: Connection; scene: AuthorScene; organ: number; name: string }) {
+  const [presets, setPresets] = useState<Preset[]>([]);
+  useEffect(() => void connection.call<Preset[]>("scene.presets").then(setPresets, () => {}), [connection]); // what a scene can name
+  const doc = scene.doc!, path: JSONPath = ["organs", organ], fields = listOf(doc.lastValue, "organs")[organ] ?? {}, layers = listOf(fields, "layers");
+  const choice = (label: string, of: Fields, at: JSONPath) => (
+    <label class="field"><span>{label}</span>
+      <select value={presetOf(of)} onChange={(e) => doc.set([[[...at, "material"], materialAs(e.currentTarget.value, materialOf(of))]])}>
+        {presetOf(of) === kOwn && <option value={kOwn}>own values</option>}
+        {presets.map((preset) => <option key={preset.name} title={preset.source}>{preset.name}</option>)}
+      </select>
+    </label>
+  );
+  const depthOf = (layer: Fields | undefined) => (typeof layer?.to_depth_mm === "number" ? layer.to_depth_mm : 0);
+  const radius = 1e3 * (scene.stage?.organSpheres[organ]?.radius ?? 0.004);
+  const add = () => doc.set([[[...path, "layers", layers.length], {
+    to_depth_mm: Number((depthOf(layers.at(-1)) + 2 * radius).toPrecision(3)), material: materialAs(presetOf(layers.at(-1) ?? fields) || "soft-tissue", {}),
+  }]]);
+  const source = presets.find((preset) => preset.name === presetOf(fields))?.source;
+  return (
+    <Section title={`${name}: its tissue`}>
+      {choice(layers.length > 0 ? "below its layers" : "tissue", fields, path)}
+      {source && <p class="hint source">Its values: {source}.</p>}
+      {layers.map((layer, i) => (
+        <fieldset key={i} class="layer">
+          <legend>layer of tissue {i + 1}, from {depthOf(layers[i - 1])} mm
+            <button type="button" class="quiet remove" aria-label={`Remove layer of tissue ${i + 1}`} onClick={() => doc.set([[layers.length > 1 ? [...path, "layers", i] : [...path, "layers"], undefined]])}>remove</button>
+          </legend>
+          <NumberField label="down to" hasOwnUnit unit="mm" step={0.5} least={0.01} value={depthOf(layer)} onDone={() => doc.commit()}
+            onInput={(depth) => doc.preview([[[...path, "layers", i, "to_depth_mm"], depth]])} />
+          {choice("tissue", layer, [...path, "layers", i])}
+        </fieldset>
+      ))}
+      <div class="buttons add"><button type="button" class="quiet" disabled={doc.value === undefined} onClick={add}>+ layer of tissue</button></div>
+      <p class="hint">A sphere belongs to the first layer that ends below its centre: one that is thinner than the spheres lie apart may have none.</p>
+    </Section>
+  );
+}
