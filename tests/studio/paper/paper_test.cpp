@@ -176,15 +176,22 @@ TEST(Paper, SlowAfterACutDampedModelsStayUndampedMassSpringWandersAndOnlyATenseC
   const std::vector<reports::Table>& tables = experiment->section.tables;
   ASSERT_EQ(tables.size(), 2u);
   const auto spread = [&](const char* model, const char* viscosity, const char* tension, const char* integrator,
-                          const char* point) {
-    return number_in(tables[0], {model, viscosity, tension, integrator, point}, "spread_mm");
+                          const char* point, const char* key) {
+    return number_in(tables[0], {model, viscosity, tension, integrator, point}, key);
   };
   for (const char* point : {"A", "B", "C", "D"}) {
-    // Without numerical damping. Under sdirk2 the swing of the present, stiffer scene is too fast for its steps.
-    EXPECT_GT(spread("mass-spring", "", "yes", "leapfrog", point), 0.1) << point;
-    EXPECT_LT(spread("CTPM", "kPa s", "yes", "sdirk2", point), 1e-3) << point;
-    EXPECT_LT(spread("CTPM", "kPa s", "no", "sdirk2", point), 1e-3) << point;
-    EXPECT_LT(spread("damped mass-spring", "kPa s", "yes", "sdirk2", point), 1e-3) << point;
+    // Without numerical damping. Under sdirk2 the swing of the present, stiffer scene is too fast for its steps. It is
+    // chaotic: what eight places of it make of another way there is of no more use than a throw of eight dice.
+    const double wandering = spread("mass-spring", "", "yes", "leapfrog", point, "way_spread_mm");
+    EXPECT_GT(wandering, 0.1) << point;
+    for (const char* key : {"spread_mm", "way_spread_mm"}) {
+      EXPECT_LT(spread("CTPM", "kPa s", "yes", "sdirk2", point, key), 1e-3) << point;
+      EXPECT_LT(spread("CTPM", "kPa s", "no", "sdirk2", point, key), 1e-3) << point;
+      EXPECT_LT(spread("damped mass-spring", "kPa s", "yes", "sdirk2", point, key), 1e-3) << point;
+    }
+    RecordProperty(std::string("spread_") + point, std::to_string(wandering));
+    std::printf("%s: mass-spring %.4f mm all the while, %.4f mm of eight places\n", point, wandering,
+                spread("mass-spring", "", "yes", "leapfrog", point, "spread_mm"));
   }
   for (const char* side : {"opening between A and C", "opening between B and D"}) {
     EXPECT_LT(network_of(*experiment, std::string(side) + ", no tension", "kPa s"), 0);
