@@ -29,7 +29,7 @@ struct FrameFacts {
   bool is_glimpse = false;      ///< the tissue is between two States that are known; the replayed picture follows
   std::int64_t tick = 0;        ///< ticks done
   Vec3 force;                   ///< of the tissue on the tool [N]
-  double depth = 0;             ///< of a ball in the organ; of a training's blade, along it [m]
+  double depth = 0;             ///< of a ball in the organ, of a blade along it; of a glimpse's blade 0 [m]
   std::int32_t contacts = 0;    ///< spheres touched
   std::int64_t severed = 0;     ///< elements severed so far
   Vec3 hand;                    ///< position of the hand that leads the tool [m]; of a replay: the tool's

@@ -229,6 +229,7 @@ void Stage::replay() {
   Seeker seeker(reader_, *moments_, spares_);
   PictureMaker maker(reader_.start().model, number_, cuts_);
   Drawing drawing(reader_);
+  session::ToolDepth depth(reader_.start().model);
   while (const std::optional<Wish> wish = next()) {
     const bool is_far = seeker.is_far(wish->tick);
     if (is_far) wait_for_glimpse(*wish);
@@ -239,7 +240,7 @@ void Stage::replay() {
     if (!there || !*there) continue;
     const State& state = seeker.cursor().state();
     maker.show(expert());
-    Picture picture = maker.make(state, facts(seeker, wish->request));
+    Picture picture = maker.make(state, facts(seeker, wish->request, depth));
     const Result<bool> is_drawn = follow_plan(drawing);
     if (!is_drawn) outbox_->send(stage_failed(number_, is_drawn.errors()));
     if (is_drawn && *is_drawn) {
@@ -284,7 +285,7 @@ void Stage::glance() {
   }
 }
 
-FrameFacts Stage::facts(const Seeker& seeker, std::uint32_t request) {
+FrameFacts Stage::facts(const Seeker& seeker, std::uint32_t request, session::ToolDepth& depth) {
   const recordings::ReplayCursor& cursor = seeker.cursor();
   FrameFacts facts;
   facts.request = request;
@@ -294,8 +295,11 @@ FrameFacts Stage::facts(const Seeker& seeker, std::uint32_t request) {
   facts.hand = cursor.state().last_inputs.position;
   facts.second.hand = cursor.state().last_inputs.second.position;
   if (cursor.tick() == 0) return facts;  // nothing was simulated yet
-  facts.force = cursor.report().tool_force, facts.depth = cursor.report().depth;
-  facts.contacts = cursor.report().contacts, facts.second.report = cursor.report().second;
+  const State& state = cursor.state();
+  facts.force = cursor.report().tool_force, facts.contacts = cursor.report().contacts;
+  facts.second.report = cursor.report().second;
+  facts.depth = depth.of(state.last_inputs, cursor.report().depth, state);
+  facts.second.report.depth = depth.of(state.last_inputs.second, cursor.report().second.depth, state);
   facts.tick_time = cursor.record().tick_time, facts.slip = cursor.record().slip;
   return facts;
 }

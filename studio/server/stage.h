@@ -22,6 +22,7 @@
 #include "studio/server/outbox.h"
 #include "studio/server/picture.h"
 #include "studio/server/spare_cursors.h"
+#include "studio/session/tool_depth.h"
 
 namespace ctpm::server {
 
@@ -83,7 +84,7 @@ class Stage {
   std::optional<Wish> next_glimpse();
   bool is_outdated();
   void show(Picture picture, const Wish& wish, bool is_glimpse);
-  FrameFacts facts(const Seeker& seeker, std::uint32_t request);
+  FrameFacts facts(const Seeker& seeker, std::uint32_t request, session::ToolDepth& depth);
 
   recordings::SessionReader reader_;
   std::unique_ptr<Moments> moments_;

@@ -12,9 +12,9 @@
 #include "studio/server/idle_pause.h"
 #include "studio/server/picture.h"
 #include "studio/server/text.h"
-#include "studio/session/cut_measures.h"
 #include "studio/session/recent_times.h"
 #include "studio/session/record_session.h"
+#include "studio/session/tool_depth.h"
 #include "studio/session/unkept_session.h"
 #include "studio/session/urgency.h"
 
@@ -189,24 +189,19 @@ void Training::tick() {
 void Training::show() {
   const Model& model = start_->model;
   PictureMaker maker(model, stage_);
-  std::optional<session::CutMeasures> cuts;  // once a blade is in a hand
-  const auto depth_of = [&](const Hand& hand, double ball_depth, const State& state) {
-    if (!model.is_scalpel(hand.tool)) return ball_depth;
-    if (!cuts) cuts.emplace(model);
-    return cuts->edge_depth(state);
-  };
+  session::ToolDepth depth(model);
   FrameFacts facts;
   facts.is_live = true;
   outbox_->show(maker.make(start_->initial_state, facts));
   const auto make = [&](const LiveTick& tick) {
     facts.tick = tick.state.tick, facts.force = tick.record.tool_force;
-    facts.depth = depth_of(tick.record.inputs, tick.record.depth, tick.state);
+    facts.depth = depth.of(tick.record.inputs, tick.record.depth, tick.state);
     facts.contacts = tick.record.contacts, facts.tick_time = tick.record.tick_time;
     facts.severed = severed_in(tick.state), facts.late_ticks = tick.late_ticks;
     facts.tick_p99 = tick.tick_p99, facts.slip = tick.record.slip;
     facts.hand = tick.record.inputs.position;
     facts.second = {tick.record.second, tick.record.inputs.second.position};
-    facts.second.report.depth = depth_of(tick.record.inputs.second, tick.record.second.depth, tick.state);
+    facts.second.report.depth = depth.of(tick.record.inputs.second, tick.record.second.depth, tick.state);
     outbox_->show(maker.make(tick.state, facts));
   };
   while (!has_ended_) {

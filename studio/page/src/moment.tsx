@@ -63,13 +63,13 @@ export function Moment({ connection, player, frame, other }: { connection: Conne
     }
     setProgress(null);
   };
-  const depthOf = (stage: number, { tool, depth }: { tool: number; depth: number }) =>
-    player.tracks.get(stage)?.session.view.tools[tool]?.kind === "scalpel" ? "–" : millimetres(depth, 2); // a blade has none
+  const depthOf = (stage: number, { tool, depth }: { tool: number; depth: number }, isGlimpse: boolean) =>
+    isGlimpse && player.tracks.get(stage)?.session.view.tools[tool]?.kind === "scalpel" ? "–" : millimetres(depth, 2); // of a blade it is known once the moment is
   const rows = (shown: ShownFrame, stage: number): [string, string][] => shown ? [
     ["force", newtons(Math.hypot(...shown.force))],
-    ["depth", depthOf(stage, shown)],
+    ["depth", depthOf(stage, shown, shown.isGlimpse)],
     ...(shown.second
-      ? ([["force, left", newtons(Math.hypot(...shown.second.force))], ["depth, left", depthOf(stage, shown.second)]] as [string, string][])
+      ? ([["force, left", newtons(Math.hypot(...shown.second.force))], ["depth, left", depthOf(stage, shown.second, shown.isGlimpse)]] as [string, string][])
       : []),
     ["touched", `${shown.contacts} points`],
     ["severed", `${shown.severed} elements`],
@@ -89,7 +89,7 @@ export function Moment({ connection, player, frame, other }: { connection: Conne
           ["recorded", info.created_utc.replace("T", " ").replace("Z", " UTC") || "its time of day was taken out"],
           ["tissue", `${info.spheres} spheres`],
           ["largest force", newtons(info.max_force_n)],
-          ["deepest press", millimetres(info.max_depth_m, 2)],
+          ["deepest press", info.max_depth_m ? millimetres(info.max_depth_m, 2) : "–"],
           ...tickRows(info.tick_time_p50_s, info.tick_time_p99_s, info.tick_s),
           // Only a session that was recorded in real time knows how long it waited.
           ...("waited_for_processor_s" in info.values || info.late_ticks > 0

@@ -609,7 +609,7 @@ step("an export is the one that the shown command makes, and can be cancelled", 
   await page.click("#tab-export");
   assert.equal(await field("file in the folder").inputValue(), "long.avi");
   await page.click("#panel .working button");
-  await page.waitForSelector("#panel .problems");
+  await page.waitForSelector("#panel .hint:has-text('Stopped; nothing was written')");
   assert.ok(!existsSync(join(folder, "long.avi")));
 });
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <sstream>
 #include <thread>
 
 #include "core/contact/drawn_surfaces.h"
@@ -86,6 +87,33 @@ TEST_F(Reviewing, AFrameIsTheReplayedMoment) {
       EXPECT_LT(worst, 0.51 * size / 65535 + 1e-8) << "tick " << tick;
     }
   }
+}
+
+TEST_F(Reviewing, ABladesDepthIsWhatTheTableOfAReplaySays) {
+  ASSERT_EQ(testing::run_ctpm({"replay", kCut, "--csv", "replay.csv"}, folder_.path()).code, 0);
+  std::ifstream table(file("replay.csv"));
+  const auto cells_of = [](const std::string& line) {
+    std::vector<std::string> cells;
+    std::istringstream text(line);
+    for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
+    return cells;
+  };
+  std::string line;
+  std::getline(table, line);
+  const std::vector<std::string> head = cells_of(line);
+  const auto column = std::size_t(std::find(head.begin(), head.end(), "blade_depth_mm") - head.begin());
+  ASSERT_LT(column, head.size()) << line;
+  std::vector<double> depth;  // of each tick [mm]
+  while (std::getline(table, line)) depth.push_back(std::stod(cells_of(line)[column]));
+  const auto deepest = std::max_element(depth.begin(), depth.end()) - depth.begin();
+  EXPECT_GT(depth[std::size_t(deepest)], 5);
+
+  const Serving serving(folder_.path());
+  SocketClient client(serving);
+  ASSERT_TRUE(client.call("session.open", {{"path", kCut}, {"stage", 0}}).contains("result"));
+  std::uint32_t request = 0;
+  for (const std::int64_t tick : {std::int64_t(deepest), std::int64_t(deepest / 2), std::int64_t(0)})
+    EXPECT_NEAR(1e3 * value_at<float>(frame_of(client, tick + 1, ++request), 84), depth[std::size_t(tick)], 1e-3);
 }
 
 TEST_F(Reviewing, TrianglesComeBeforeTheirFrameAndOnlyWhenACutChangedThem) {
