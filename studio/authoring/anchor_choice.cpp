@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/box.h"
+#include "importers/text.h"
 #include "scenes/anchors.h"
 #include "scenes/build_model.h"
 
@@ -62,6 +64,13 @@ Result<AnchorChoice> try_anchors(scenes::SceneSpec& scene, const FilledOrgan& or
   return choice;
 }
 
+/// The diagonal of the box around an organ's spheres.
+std::string size_text(const FilledOrgan& organ) {
+  Box box(organ.centre.front());
+  for (const Vec3& p : organ.centre) box.add(p);
+  return importers::mm_text(norm(box.high - box.low) + 2 * organ.sphere_radius);
+}
+
 }  // namespace
 
 scenes::AnchorSpec usual_anchor(const FilledOrgan& organ) { return anchor_of(kHolds[0], organ); }
@@ -90,7 +99,7 @@ Result<AnchorChoice> choose_anchors(scenes::SceneSpec scene, const FilledOrgan& 
   if (!best && !why.empty()) return why;
   if (!best)
     return Error{"organ " + scene.organs[0].name, "is so small in spheres that any anchor holds all of them",
-                 "a smaller radius gives it more"};
+                 "a smaller radius gives it more; with the unit that was taken it is " + size_text(organ) + " long"};
   return *std::move(best);
 }
 

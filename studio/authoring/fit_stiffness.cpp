@@ -8,6 +8,7 @@
 #include "scenes/build_model.h"
 #include "scenes/places.h"
 #include "scenes/presets.h"
+#include "studio/authoring/anchor_choice.h"
 #include "studio/output/number_text.h"
 #include "studio/rig/site.h"
 
@@ -36,12 +37,15 @@ void make_slow(scenes::MaterialSpec& material, double factor) {
   multiply_scale(material, factor);
 }
 
-/// The scene with that organ alone, without gravity and viscosity, and with the calibration's ball as its tool.
-scenes::SceneSpec slow_scene(const scenes::SceneSpec& scene, std::size_t organ, double factor) {
+/// The scene with that organ alone, without gravity and viscosity, and with the calibration's ball as its tool, which
+/// would push away what nothing holds.
+scenes::SceneSpec slow_scene(const scenes::SceneSpec& scene, std::size_t organ, const FilledOrgan& filled,
+                             double factor) {
   scenes::SceneSpec slow;
   slow.name = scene.name, slow.gravity = {}, slow.tick = 10e-3;
   slow.organs = {scene.organs[organ]};
   scenes::OrganSpec& own = slow.organs[0];
+  if (!own.rig && own.anchors.empty()) own.anchors = {usual_anchor(filled)};
   make_slow(own.material, factor);
   for (scenes::LayerSpec& layer : own.layers) make_slow(layer.material, factor);
   scenes::ToolSpec ball;
@@ -131,7 +135,7 @@ Result<StiffnessFit> fit_stiffness(const scenes::SceneSpec& scene, std::size_t o
   const std::vector<FilledOrgan> only{filled};
   const Vec3 up = up_in(scene);
   const rig::Site site = rig::site_of(spec);
-  const auto build = [&](double factor) { return scenes::build_model(slow_scene(scene, organ, factor), only); };
+  const auto build = [&](double factor) { return scenes::build_model(slow_scene(scene, organ, filled, factor), only); };
 
   const Result<scenes::BuiltScene> first = build(1);
   if (!first) return first.errors();

@@ -389,10 +389,7 @@ class Import {
       part.can_be_fitted_later = true;
     }
     if (!part.fit_problem.empty()) return;
-    scenes::SceneSpec scene = alone(draft);
-    // The ball would push away what nothing holds.
-    if (scene.organs[0].anchors.empty()) scene.organs[0].anchors = {usual_anchor(draft.filled)};
-    const Result<StiffnessFit> fit = fit_stiffness(scene, 0, draft.filled, request_.should_stop);
+    const Result<StiffnessFit> fit = fit_stiffness(alone(draft), 0, draft.filled, request_.should_stop);
     if (!fit) {
       part.fit_problem = fit.errors().front().message;
     } else if (!(fit->scale >= kLeastScale && fit->scale <= kMostScale)) {

@@ -24,6 +24,8 @@ std::string number(double value) {
   return text;
 }
 
+/// A part of its size by which an organ as a whole may move before the first tick (our choice).
+constexpr double kFarAway = 0.25;
 /// Part of an organ's spheres that may lie in another one: scans of neighbours overlap a little (our choice).
 constexpr double kOverlap = 0.02;
 
@@ -86,6 +88,11 @@ class Look {
         warn(at + "/anchors", "hold every sphere of the organ, so that nothing of it can move", "anchor less of it");
       else if (organ.held == 0 && norm(spec.gravity) > 0 && !can_rest)
         warn(at, "nothing holds the organ, so that it falls", "give it anchors, or an obstacle to rest on");
+      else if (organ.way > kFarAway * organ.size)
+        warn(
+            at,
+            "nothing holds the organ where it is: it moves by " + number(1e3 * organ.way) + " mm before the first tick",
+            "give it anchors, or an obstacle right below it");
       else if (!organ.stands())
         warn(at,
              "sags by " + number(1e3 * organ.sag) + " mm under its weight, " + number(100 * organ.share()) +

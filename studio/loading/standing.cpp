@@ -31,6 +31,7 @@ OrganStanding standing_of(const Model& model, const State& state, const OrganRan
   }
   // What nothing holds falls onto something as a whole.
   if (standing.held > 0) mean = {};
+  standing.way = norm(mean);
   for (std::size_t i = first; i < last; ++i)
     standing.sag = std::max(standing.sag, norm(way_of(model, state, i) - mean));
   standing.size = norm(most - least);

@@ -16,6 +16,7 @@ inline constexpr double kMostSag = 0.1;
 /// How one organ comes to rest.
 struct OrganStanding {
   double sag = 0;  ///< largest way of a sphere from its rest position, without that of the whole if nothing is held [m]
+  double way = 0;  ///< of the whole, where nothing of it is held [m]
   double size = 0;        ///< diagonal of the box around its spheres at rest [m]
   std::int32_t held = 0;  ///< spheres that never move
 

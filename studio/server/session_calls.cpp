@@ -18,6 +18,7 @@
 namespace ctpm::server {
 namespace {
 
+constexpr double kNone = -1;        ///< of a quantity that is never negative
 constexpr double kSpeedRate = 100;  ///< at which the hand's speed is measured, as in a comparison [Hz]
 
 /// The extremes of consecutive values, at most `most` of them.
@@ -30,10 +31,14 @@ std::vector<double> thinned(const std::vector<double>& values, std::size_t most)
   return result;
 }
 
-/// Numbers with the digits that a plot can show.
+/// Numbers with the digits that a plot can show; null: kNone.
 void write_values(output::JsonWriter& json, const char* key, const std::vector<double>& values) {
   json.key(key).begin_list();
-  for (const double value : values) json.value(double(float(value)));
+  for (const double value : values)
+    if (value == kNone)
+      json.null();
+    else
+      json.value(double(float(value)));
   json.end_list();
 }
 
@@ -112,7 +117,11 @@ Result<std::string> session_timeline(Parameters& parameters, const CallContext& 
   const std::vector<double> force = thinned(track->force, std::size_t(points));
   json.member("points", force.size());
   write_values(json, "force_n", force);
-  write_values(json, "depth_m", thinned(track->depth, std::size_t(points)));
+  // What a tick says of depth is a ball's.
+  std::vector<double> depth = track->depth;
+  for (std::size_t i = 0; i < depth.size(); ++i)
+    if (reader->start().model.is_scalpel(track->tool[i])) depth[i] = kNone;
+  write_values(json, "depth_m", thinned(depth, std::size_t(points)));
   write_values(json, "speed_m_per_s", thinned(speed, std::size_t(points)));
   return json.end_object().text();
 }

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -109,7 +110,9 @@ Result<Done> VideoWriter::Parts::open_first(std::size_t asked_for) {
       note = std::string(kFormats[asked_for].codec) + " is not available here: " + format.container +
              " was written instead";
     path = stem + (i == asked_for && format.is_pictures() ? "" : format.written);
-    part = stem + ".part" + std::to_string(getpid()) + (format.is_pictures() ? "" : format.ending);
+    static std::atomic<int> files = 0;  // one process may write several of one name
+    part = stem + ".part" + std::to_string(getpid()) + "-" + std::to_string(++files) +
+           (format.is_pictures() ? "" : format.ending);
     if (format.is_pictures()) return open_pictures();
     if (const int failed = cannot_write(part); failed != 0)
       return Error{path, std::string("cannot be written: ") + std::strerror(failed), ""};

@@ -28,6 +28,7 @@ export class SceneDocument {
   onDisk: OnDisk = "same";
   private drafted: string | null = null; // the draft that it began with
   private keeping: ReturnType<typeof setTimeout> | null = null; // until the history is kept; null: it is
+  private followed = -Infinity; // when it followed last [ms]
   private isFollowing = false; // a text that another tab keeps
   private isBehind = false; // what another tab made of the scene, while nobody sees this one
   private valid: Json | undefined;
@@ -202,9 +203,12 @@ export class SceneDocument {
   private async follow(draft: string | null): Promise<void> {
     const file = draft === null ? await this.readFile() : readDraft(this.path)?.file;
     if (!file || (draft === null && readDraft(this.path))) return; // it is gone, or it was changed again
+    const now = performance.now();
+    if (now - this.followed > kOneStep) ++this.gestures; // what is typed there without a break is one step here too
+    this.followed = now;
     this.isFollowing = true;
     this.before = this.last = null;
-    this.setText(draft ?? file.text, ++this.gestures);
+    this.setText(draft ?? file.text, this.gestures);
     this.took(file);
     this.isFollowing = false;
   }

@@ -1,11 +1,11 @@
 import type { JSX } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import { faultText } from "./compare";
 import type { Connection } from "./connection";
 import { download } from "./download";
 import { NumberInput } from "./fields";
 import { asSeen, isFree, type Look, lookParameters, lookWords } from "./look";
-import { Problems, Section, ShownCommand, Working } from "./parts";
+import { Problems, Section, ShownCommand, useRedraw, Working } from "./parts";
 import type { Player } from "./player";
 import type { ComparisonResult } from "./protocol";
 import { bytes, command, newtons, seconds, whyNot } from "./text";
@@ -59,46 +59,57 @@ function faultAt(player: Player, comparison: ComparisonResult | null): string {
   return expert !== null && trainee !== null ? `force ${newtons(trainee)}, expert ${newtons(expert)}` : "";
 }
 
-/** An export that goes on, or is done. */
-export interface ExportJob {
-  progress: [number, number] | null; // null: none goes on
-  result: Exported | null;
-  error: Error | null;
-  isStopped: boolean; // by hand
-  start(params: object): Promise<void>;
-  cancel(): void;
-  fail(error: Error): void;
-}
+/** An export that goes on, or is done: also while another tab, session or room is looked at. */
+export class ExportJob {
+  onChange: () => void = () => {};
+  progress: [number, number] | null = null; // null: none goes on
+  result: Exported | null = null;
+  error: Error | null = null;
+  isStopped = false; // by hand
+  private stop = new AbortController();
 
-export function useExport(connection: Connection): ExportJob {
-  const [progress, setProgress] = useState<[number, number] | null>(null);
-  const [result, setResult] = useState<Exported | null>(null);
-  const [error, fail] = useState<Error | null>(null), [isStopped, setStopped] = useState(false);
-  const stop = useRef<AbortController | null>(null);
-  const start = async (params: object) => {
-    const { signal } = (stop.current = new AbortController());
-    fail(null), setStopped(false), setResult(null), setProgress([0, 1]);
+  constructor(private readonly connection: Connection) {}
+
+  async start(params: object): Promise<void> {
+    const { signal } = (this.stop = new AbortController());
+    this.change({ error: null, isStopped: false, result: null, progress: [0, 1] });
     try {
-      setResult(await connection.call<Exported>("session.export", params,
-        { signal, progress: (done, total) => setProgress([done, total]) }));
+      const result = await this.connection.call<Exported>("session.export", params, { signal, progress: (done, total) => this.change({ progress: [done, total] }) });
+      this.change({ result, progress: null });
     } catch (failure) {
-      if (signal.aborted) setStopped(true);
-      else fail(failure as Error);
+      this.change({ progress: null, ...(signal.aborted ? { isStopped: true } : { error: failure as Error }) });
     }
-    setProgress(null);
-  };
-  return { progress, result, error, isStopped, start, cancel: () => stop.current?.abort(), fail };
+  }
+  cancel = (): void => this.stop.abort();
+  fail = (error: Error): void => this.change({ error });
+
+  private change(to: Partial<Pick<ExportJob, "progress" | "result" | "error" | "isStopped">>): void {
+    Object.assign(this, to);
+    this.onChange();
+  }
+}
+const jobs = new WeakMap<Connection, ExportJob>();
+
+/** The export of a connection, while a room shows it. */
+export function useExport(connection: Connection): ExportJob {
+  const redraw = useRedraw(), job = jobs.get(connection) ?? new ExportJob(connection);
+  jobs.set(connection, job);
+  useEffect(() => {
+    job.onChange = redraw;
+    return () => void (job.onChange = () => {});
+  }, [job]);
+  return job;
 }
 
 /** A video of what is seen. */
-export function ExportForm({ connection, player, look, comparison, job: { progress, result, error, isStopped, start, cancel, fail } }: {
+export function ExportForm({ connection, player, look, comparison, job }: {
   connection: Connection;
   player: Player;
   look: Look;
   comparison: ComparisonResult | null;
   job: ExportJob;
 }) {
-  const { session } = player.tracks.get(0)!;
+  const { progress, result, error, isStopped, cancel, fail } = job, { session } = player.tracks.get(0)!;
   const beside = player.tracks.get(1)?.session.path;
   const [isGhostWanted, setGhost] = useState(false);
   const canGhost = !!beside && !player.otherScene, isGhost = canGhost && isGhostWanted; // the expert's in the trainee's session
@@ -222,7 +233,7 @@ export function ExportForm({ connection, player, look, comparison, job: { progre
       <ShownCommand text={shown} />
       <div class="always-seen">
         {progress ? <Working what="exporting" done={progress[0]} total={progress[1]} onCancel={cancel} />
-          : <button type="button" class="main" disabled={!output || isTaken || wrong.length > 0} onClick={() => void start(params)}>Export</button>}
+          : <button type="button" class="main" disabled={!output || isTaken || wrong.length > 0} onClick={() => void job.start(params)}>Export</button>}
         {wrong.map((why) => <p key={why} class="warning" role="status">{why}.</p>)}
         {isStopped && <p class="hint" role="status">Stopped; nothing was written.</p>}
         <Problems error={error} />

@@ -43,7 +43,8 @@ export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScen
       <p class="hint">{kTurning}{item.place && ` Where its handle has the focus, arrow keys move it by ${mm(kNudge)} mm, with Shift by ${mm(kFineNudge)} mm.`}</p>
       {item.kind !== "anchor" && (
         <label class="field"><span>name</span>
-          <input value={item.name} onInput={(e) => e.currentTarget.value && preview([[at("name"), e.currentTarget.value]])} onChange={done} />
+          <input value={item.name} onInput={(e) => e.currentTarget.value && preview([[at("name"), e.currentTarget.value]])} onChange={done}
+            onBlur={(e) => (e.currentTarget.value = item.name)} />
         </label>
       )}
       {kWhatItDoes[item.kind] && <p class="hint">{kWhatItDoes[item.kind]}</p>}

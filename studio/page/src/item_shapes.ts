@@ -6,6 +6,7 @@ const kUnitBall = new three.SphereGeometry(1, 28, 18);
 const kUnitBox = new three.BoxGeometry(1, 1, 1);
 const kUnitEdges = new three.EdgesGeometry(kUnitBox);
 const kUnitSquare = new three.PlaneGeometry(1, 1);
+const kUnitRim = new three.EdgesGeometry(kUnitSquare);
 export const kItemColours: Record<Item["kind"], number> = { organ: 0xe7eaee, anchor: 0x7cc0ff, tool: 0xffc857, probe: 0x7fd6a0, obstacle: 0x9fb0b8, zone: 0xff8a80, camera: 0xd9c7ff };
 
 function glassy(colour: number, opacity: number): three.Material {
@@ -31,11 +32,12 @@ export function shapeOf(item: Item, stage: StageScene, size: number, isSelected:
     }
     group.quaternion.copy(item.turn);
   } else if (item.shape === "sphere" || item.shape === "box") {
-    group.add(new three.Mesh(item.shape === "sphere" ? kUnitBall : kUnitBox, glassy(colour, isSelected ? 0.34 : 0.2)));
+    if (item.kind !== "obstacle") group.add(new three.Mesh(item.shape === "sphere" ? kUnitBall : kUnitBox, glassy(colour, isSelected ? 0.34 : 0.2)));
     if (item.shape === "box") group.add(new three.LineSegments(kUnitEdges, lines(colour)));
     group.scale.copy(item.size).max(new three.Vector3(1e-5, 1e-5, 1e-5));
   } else if (item.shape === "plane") {
-    group.add(new three.Mesh(kUnitSquare, glassy(colour, 0.16)));
+    // Obstacles are drawn with the scene: of what would lie on them only edges are.
+    group.add(item.kind === "obstacle" ? new three.LineSegments(kUnitRim, lines(colour)) : new three.Mesh(kUnitSquare, glassy(colour, 0.16)));
     group.scale.setScalar(size);
     group.quaternion.copy(item.turn);
   } else if (item.shape === "camera") {

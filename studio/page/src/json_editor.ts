@@ -101,7 +101,7 @@ export function editorOf(label: string, schema: () => Schema | null, more: Exten
     return { from: Math.min(from, context.pos), options, validFor: /^\w*$/ };
   };
   return [
-    lineNumbers(), steps(), drawSelection(), json(), bracketMatching(), closeBrackets(),
+    lineNumbers(), EditorView.lineWrapping, steps(), drawSelection(), json(), bracketMatching(), closeBrackets(),
     syntaxHighlighting(kColours), kTheme, autocompletion({ override: [complete], icons: false }),
     EditorState.tabSize.of(2), EditorView.contentAttributes.of({ "aria-label": label, spellcheck: "false", tabindex: "0" }),
     keymap.of([...completionKeymap, ...closeBracketsKeymap, ...defaultKeymap, ...historyKeymap]),

@@ -35,17 +35,25 @@ function middleOf(scene: AuthorScene, viewer: Viewer): { place: three.Vector3; n
   return scene.stage?.meet(ray) ?? { place: middle, normal: new three.Vector3(...view.up), organ: 0 };
 }
 
-const kBlock = 0.02; // height of a box that organs stand on [m]
+const kBlock = 0.02; // height of a block [m]
+const kBrim = 0.25; // by which it is wider than the organs on each side, of their size
 
-/** What organs stand on as they are shown: a table, or a box as wide as they are. */
-function ground({ view }: { view: SceneView }, shape: string): Fields {
+/** What organs stand on as they are shown: a table, or a block that is wider than they are. Where there is a ground, a block stands
+    beside them. */
+function ground({ view }: { view: SceneView }, shape: string, isThere: boolean): Fields {
   const up = new three.Vector3(...view.up), least = new three.Vector3(...view.least), most = new three.Vector3(...view.most);
-  const corner = (of: (x: number) => boolean) => new three.Vector3(...up.toArray().map((x, i) => (of(x) ? least : most).getComponent(i))), lowest = corner((x) => x > 0);
-  if (shape === "plane") return { plane: { point_mm: mmVector(least.clone().add(most).multiplyScalar(0.5).projectOnPlane(up).addScaledVector(up, lowest.dot(up))), normal: direction(up) } };
+  const lowest = new three.Vector3(...up.toArray().map((x, i) => (x > 0 ? least : most).getComponent(i))).dot(up);
+  if (shape === "plane") return { plane: { point_mm: mmVector(least.clone().add(most).multiplyScalar(0.5).projectOnPlane(up).addScaledVector(up, lowest)), normal: direction(up) } };
   // Boxes lie along the axes: this one is below the side that faces down most.
-  const axis = up.toArray().reduce((best, x, i, all) => (Math.abs(x) > Math.abs(all[best]) ? i : best), 0);
-  const below = up.getComponent(axis) > 0 ? [least.getComponent(axis) - kBlock, least.getComponent(axis)] : [most.getComponent(axis), most.getComponent(axis) + kBlock];
-  return { box: { min_mm: mmVector(least.setComponent(axis, below[0])), max_mm: mmVector(most.setComponent(axis, below[1])) } };
+  const axis = up.toArray().reduce((best, x, i, all) => (Math.abs(x) > Math.abs(all[best]) ? i : best), 0), brim = most.clone().sub(least).multiplyScalar(kBrim);
+  const [from, to] = [least.clone().sub(brim), most.clone().add(brim)];
+  const isUp = up.getComponent(axis) > 0, bottom = (isUp ? least : most).getComponent(axis), isAfter = isUp === isThere; // below the organs, or beside them
+  if (isThere) {
+    const side = (axis + 1) % 3, wide = most.getComponent(side) - least.getComponent(side);
+    from.setComponent(side, most.getComponent(side) + 0.1 * wide), to.setComponent(side, most.getComponent(side) + 0.6 * wide);
+  }
+  from.setComponent(axis, isAfter ? bottom : bottom - kBlock), to.setComponent(axis, isAfter ? bottom + kBlock : bottom);
+  return { box: { min_mm: mmVector(from), max_mm: mmVector(to) } };
 }
 
 /** Adds a thing where the middle of the picture meets the surface. Returns its key. */
@@ -64,7 +72,7 @@ export function addItem(scene: AuthorScene, viewer: Viewer, kind: Exclude<ItemKi
     const list = listOf(value, kListOf[kind]);
     path = [kListOf[kind], list.length];
     entry = { name: freeName(list, kind === "tool" ? shape : shape === "plane" ? "table" : kind === "obstacle" ? "block" : kind) };
-    if (kind === "obstacle") Object.assign(entry, ground(scene.shown!, shape));
+    if (kind === "obstacle") Object.assign(entry, ground(scene.shown!, shape, list.length > 0));
     if (kind === "zone") Object.assign(entry, region);
     if (kind === "tool" && shape === "ball") Object.assign(entry, { kind: "ball", radius_mm: mm(2.5 * radius) });
     if (shape === "scalpel") Object.assign(entry, { kind: "scalpel", blade_length_mm: 40 });
@@ -139,7 +147,7 @@ export function Objects({ scene, viewer, items, selected, onSelect, brushRadius,
           {kind !== "organ" && (
             <div class="buttons add">
               {kNew[kind].map(([shape, name]) => (
-                <button key={shape} type="button" class="quiet" disabled={!scene.shown || scene.doc?.value === undefined} onClick={() => onSelect(addItem(scene, viewer, kind, shape))}>+ {name}</button>
+                <button key={shape} type="button" class="quiet" disabled={!scene.shown || scene.doc?.value === undefined} aria-label={`+ ${name}: ${title}`} onClick={() => onSelect(addItem(scene, viewer, kind, shape))}>+ {name}</button>
               ))}
               {kind === "anchor" && (
                 <button type="button" class="quiet" disabled={!scene.shown || scene.doc?.value === undefined} aria-pressed={brushRadius !== null}

@@ -123,7 +123,7 @@ export interface TimelineData {
   duration_s: number;
   points: number;
   force_n: number[];
-  depth_m: number[];
+  depth_m: (number | null)[]; // null: a blade has none
   speed_m_per_s: number[];
 }
 

@@ -11,7 +11,7 @@ interface Row {
   unit: string;
   scale: number; // of the values of the timeline
   digits: number; // of a value that is written
-  of(data: TimelineData): number[];
+  of(data: TimelineData): (number | null)[];
 }
 
 const kRows: Row[] = [
@@ -26,18 +26,21 @@ const kFirst = "#7cc0ff", kSecond = "#ffb35c", kDifference = "#c9a2ff";
 const kLeastShown = 0.05; // [s]
 const kZoomStep = 1.5;
 
-/** The largest value of a timeline in a span of time; null outside of the session. */
-function mostIn(values: number[], duration: number, from: number, to: number): number | null {
+/** The largest value of a timeline in a span of time; null outside of the session, and where there is none. */
+function mostIn(values: (number | null)[], duration: number, from: number, to: number): number | null {
   if (to < 0 || from > duration || values.length === 0) return null;
   const first = Math.max(0, Math.min(values.length - 1, Math.floor((from / duration) * values.length)));
   const last = Math.max(first, Math.min(values.length - 1, Math.ceil((to / duration) * values.length) - 1));
-  let most = values[first];
-  for (let i = first + 1; i <= last; ++i) most = Math.max(most, values[i]);
+  let most: number | null = null;
+  for (let i = first; i <= last; ++i) {
+    const value = values[i];
+    if (value !== null) most = Math.max(most ?? value, value);
+  }
   return most;
 }
 
 /** The value at a moment: of the part that ends there, as the picture shows the tick that was done last. */
-export function valueAt(values: number[], duration: number, time: number): number | null {
+export function valueAt(values: (number | null)[], duration: number, time: number): number | null {
   const middle = time - duration / values.length / 2;
   return time < 0 ? null : mostIn(values, duration, Math.max(0, middle), Math.max(0, middle));
 }
@@ -83,9 +86,9 @@ export function Timeline({ player, marks, version }: { player: Player; marks: Ma
       plots.push(new uPlot(options(holder.clientWidth, colours.slice(0, series.length)), [times, ...series], row));
     };
     const half = step / 2;
-    const isEmpty = (data: TimelineData | null, row: Row) => !data || row.of(data).every((value) => value === 0);
+    const isEmpty = (data: TimelineData | null, row: Row) => !data || row.of(data).every((value) => !value);
     for (const row of kRows) {
-      if (isEmpty(first, row) && isEmpty(second, row)) continue; // a blade has no depth
+      if (isEmpty(first, row) && isEmpty(second, row)) continue; // sessions of blades alone have no depth
       const over = (data: TimelineData, timeOf: (time: number) => number) => times.map((t) => {
         const value = mostIn(row.of(data), data.duration_s, timeOf(t - half), timeOf(t + half));
         return value === null ? null : value * row.scale;

@@ -1,6 +1,7 @@
 // What an organ is made of: its tissue, and that of its layers from the skin inwards.
 import type { JSONPath } from "jsonc-parser";
 import { useEffect, useState } from "preact/hooks";
+import * as three from "three";
 import type { AuthorScene } from "./author_scene";
 import type { Connection } from "./connection";
 import { NumberField } from "./fields";
@@ -32,16 +33,28 @@ export function Tissue({ connection, scene, organ, name }: { connection: Connect
       </select>
     </label>
   );
+  /** How tense it lies in the body, where that is said: an import holds a capsule against what is below it. */
+  const strain = (of: Fields, at: JSONPath) => {
+    const { prestrain } = materialOf(of);
+    return typeof prestrain === "number" && (
+      <NumberField label="in-situ strain" hasOwnUnit unit="%" step={0.1} least={-20} value={Number((100 * prestrain).toPrecision(6))} onDone={() => doc.commit()}
+        onInput={(percent) => doc.preview([[[...at, "material", "prestrain"], Number((percent / 100).toPrecision(6))]])} />
+    );
+  };
   const depthOf = (layer: Fields | undefined) => (typeof layer?.to_depth_mm === "number" ? layer.to_depth_mm : 0);
-  const radius = 1e3 * (scene.stage?.organSpheres[organ]?.radius ?? 0.004);
-  const add = () => doc.set([[[...path, "layers", layers.length], {
-    to_depth_mm: Number((depthOf(layers.at(-1)) + 2 * radius).toPrecision(3)), material: materialAs(presetOf(layers.at(-1) ?? fields) || "soft-tissue", {}),
-  }]]);
+  const box = new three.Box3().setFromArray(scene.stage?.organSpheres[organ]?.centre ?? []), middle = box.isEmpty() ? 0 : 500 * Math.min(...box.getSize(new three.Vector3())); // its depth there, about [mm]
+  /** A new layer is of the same tissue as what it lies in, until another one is chosen. */
+  const add = () => {
+    const last = depthOf(layers.at(-1)), deeper = Number((middle > last ? (last + middle) / 2 : last + 1).toPrecision(3));
+    const { fitted_for: _, ...material } = materialOf(layers.at(-1) ?? fields);
+    doc.set([[[...path, "layers", layers.length], { to_depth_mm: deeper, material }]]);
+  };
   const source = presets.find((preset) => preset.name === presetOf(fields))?.source;
   return (
     <Section title={`${name}: its tissue`}>
       {choice(layers.length > 0 ? "below its layers" : "tissue", fields, path)}
       {source && <p class="hint source">Its values: {source}.</p>}
+      {strain(fields, path)}
       {layers.map((layer, i) => (
         <fieldset key={i} class="layer">
           <legend>layer of tissue {i + 1}, from {depthOf(layers[i - 1])} mm
@@ -50,6 +63,7 @@ export function Tissue({ connection, scene, organ, name }: { connection: Connect
           <NumberField label="down to" hasOwnUnit unit="mm" step={0.5} least={0.01} value={depthOf(layer)} onDone={() => doc.commit()}
             onInput={(depth) => doc.preview([[[...path, "layers", i, "to_depth_mm"], depth]])} />
           {choice("tissue", layer, [...path, "layers", i])}
+          {strain(layer, [...path, "layers", i])}
         </fieldset>
       ))}
       <div class="buttons add"><button type="button" class="quiet" disabled={doc.value === undefined} onClick={add}>+ layer of tissue</button></div>

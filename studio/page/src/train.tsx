@@ -2,6 +2,7 @@ import { useCallback, useEffect, useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
 import { DeviceForm } from "./device";
 import { deviceParameters, deviceWords, storedDevice, storeDevice } from "./device_choice";
+import { hasDraft } from "./drafts";
 import { Ended } from "./ended";
 import { ExpertChoice, proposedExpert } from "./expert_choice";
 import { useHand } from "./hand_events";
@@ -177,6 +178,7 @@ export function Train({ connection, listing, tryScene, tryText, tryView, onRevie
               <button type="button" aria-current={scene === entry.path} title={entry.path} disabled={phase === "running" || phase === "loading"} onClick={() => void begin(entry.path, phase === "ended" ? output : undefined)}>
                 <span>{entry.path.replace(/\.json$/, "")}</span>
               </button>
+              {hasDraft(entry.path) && <small class="draft" title="Save them in Author to train with them">without its unsaved changes</small>}
             </li>
           ))}
         </ul>

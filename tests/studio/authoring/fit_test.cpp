@@ -91,6 +91,16 @@ TEST(Fit, FindsTheFactorWhateverTheScaleWas) {
   EXPECT_TRUE(again->spec == spec);
 }
 
+TEST(Fit, AnOrganThatLiesLooseIsHeldMeanwhile) {
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene(kScenes + "/kidney-on-table.json");
+  ASSERT_TRUE(scene) << to_string(scene.errors().front());
+  scenes::SceneSpec spec = scene->scene.spec;
+  ASSERT_TRUE(spec.organs[0].anchors.empty());
+  const Result<authoring::StiffnessFit> fit = authoring::fit_stiffness(spec, 0, scene->organs[0]);
+  ASSERT_TRUE(fit) << to_string(fit.errors().front());
+  EXPECT_NEAR(fit->factor, 1, 0.05) << "it has the scale of the same kidney that is held";
+}
+
 TEST(Fit, AnOrganThatCannotMoveIsToldSo) {
   const Result<loading::LoadedScene> scene = loading::load_whole_scene(kScenes + "/paper/block-liver.json");
   ASSERT_TRUE(scene);

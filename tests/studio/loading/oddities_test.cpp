@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <optional>
+#include <sstream>
 #include <string>
 
 namespace ctpm {
@@ -37,6 +40,30 @@ TEST(Oddities, AnOrganInAnotherOneIsOneAndOneBesideItIsNot) {
   // Of the two it is the one that has more of its spheres in the other.
   EXPECT_NE(odd[0].where.find("scene.json:1:64"), std::string::npos) << odd[0].where << " is not the first organ";
   EXPECT_NE(odd[0].message.find("/organs/0: lies in right with "), std::string::npos) << odd[0].message;
+}
+
+TEST(Oddities, AnOrganThatFallsFarOntoItsTableIsOneAndOneThatLiesOnItIsNot) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "ctpm_on_table";
+  std::filesystem::create_directories(folder / "organs");
+  std::filesystem::copy_file(CTPM_SOURCE_DIR "/scenes/organs/kidney.obj", folder / "organs/kidney.obj",
+                             std::filesystem::copy_options::overwrite_existing);
+  std::stringstream text;
+  text << std::ifstream(CTPM_SOURCE_DIR "/scenes/kidney-on-table.json").rdbuf();
+  const std::string above = R"("point_mm": [0, 0, 0])";
+  ASSERT_NE(text.str().find(above), std::string::npos);
+  for (const char* point : {"[0, 0, 0]", "[0, 0, -150]"}) {
+    std::string scene = text.str();
+    scene.replace(scene.find(above), above.size(), std::string(R"("point_mm": )") + point);
+    std::ofstream(folder / "scene.json") << scene;
+    const auto loaded = loading::load_whole_scene((folder / "scene.json").string());
+    ASSERT_TRUE(loaded) << to_string(loaded.errors().front());
+    const std::optional<Errors> odd = loading::find_oddities(*loaded);
+    ASSERT_TRUE(odd);
+    const auto falls = std::count_if(odd->begin(), odd->end(), [](const Error& error) {
+      return error.message.find("/organs/0: nothing holds the organ where it is") != std::string::npos;
+    });
+    EXPECT_EQ(falls, point == std::string("[0, 0, 0]") ? 0 : 1) << point;
+  }
 }
 
 TEST(Oddities, AnOrganTooThinForItsSpheresIsOneWithTheRadiusThatWouldDo) {

@@ -608,6 +608,11 @@ step("an export is the one that the shown command makes, and can be cancelled", 
   await page.click("#tab-moment");
   await page.click("#tab-export");
   assert.equal(await field("file in the folder").inputValue(), "long.avi");
+  // And while another room is.
+  await page.click("header nav button:has-text('Author')");
+  await page.click("header nav button:has-text('Review')");
+  await page.click("#tab-export");
+  await page.waitForFunction(() => /exporting [1-9]\d* %/.test(document.querySelector("#panel .working")?.textContent ?? ""));
   await page.click("#panel .working button");
   await page.waitForSelector("#panel .hint:has-text('Stopped; nothing was written')");
   assert.ok(!existsSync(join(folder, "long.avi")));

@@ -340,7 +340,15 @@ step("an organ stands on a table or a block that is added, and a forbidden zone 
   await settled();
   const { box } = (await scene()).obstacles[0];
   assert.ok(Math.abs(box.max_mm[2] - lowest) < 1 && box.max_mm[2] - box.min_mm[2] === 20, JSON.stringify(box));
+  assert.ok(box.max_mm[0] - box.min_mm[0] > 100, "wider than the kidney");
   await picture(page, "author-block");
+  // Another one stands beside what is there.
+  await section("Obstacles").locator("button:text-is('+ block')").click();
+  await settled();
+  const beside = (await scene()).obstacles[1].box;
+  assert.ok(Math.abs(beside.min_mm[2] - lowest) < 1 && beside.min_mm[0] > 40, JSON.stringify(beside));
+  await picture(page, "author-blocks");
+  await page.locator(".remove").click();
   await section("Forbidden zones").locator("button:text-is('+ ball')").click();
   const [zone] = (await scene()).forbidden;
   assert.ok(fromMesh(zone.sphere.centre_mm) < 4, JSON.stringify(zone));
@@ -356,7 +364,7 @@ step("an organ stands on a table or a block that is added, and a forbidden zone 
 });
 
 step("what an organ and its layers are made of is chosen", async () => {
-  const before = await text(), tissues = page.locator('#panel section:has(h2:text-is("kidney: its tissue")) select'), depths = page.locator("#panel .layer input");
+  const before = await text(), tissues = page.locator('#panel section:has(h2:text-is("kidney: its tissue")) select'), depths = page.locator("#panel .layer label:has-text('down to') input");
   const organ = async () => (await scene()).organs[0], old = (await organ()).layers;
   assert.equal(old.length, 1);
   await page.click("#tab-filling");

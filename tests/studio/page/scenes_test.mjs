@@ -133,6 +133,11 @@ step("two tabs of a browser have one text of a scene, whoever of them changes, u
   await there.write(name("theirs"));
   await shows(page, name("theirs"));
   await says(page, ", not saved");
+  // Who trains meanwhile trains in the file.
+  await other.click("header nav button:has-text('Train')");
+  await other.waitForSelector(".room.train .draft:has-text('without its unsaved changes')");
+  await other.click("header nav button:has-text('Author')");
+  await there.settled();
   await page.bringToFront();
   await write(name("mine"));
   await shows(other, name("mine"));

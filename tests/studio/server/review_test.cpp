@@ -114,6 +114,9 @@ TEST_F(Reviewing, ABladesDepthIsWhatTheTableOfAReplaySays) {
   std::uint32_t request = 0;
   for (const std::int64_t tick : {std::int64_t(deepest), std::int64_t(deepest / 2), std::int64_t(0)})
     EXPECT_NEAR(1e3 * value_at<float>(frame_of(client, tick + 1, ++request), 84), depth[std::size_t(tick)], 1e-3);
+  // A curve of what balls press has a gap there.
+  const nlohmann::json curve = client.call("session.timeline", {{"path", kCut}, {"points", 500}})["result"]["depth_m"];
+  EXPECT_TRUE(curve[curve.size() * std::size_t(deepest) / depth.size()].is_null()) << curve;
 }
 
 TEST_F(Reviewing, TrianglesComeBeforeTheirFrameAndOnlyWhenACutChangedThem) {
