@@ -177,6 +177,12 @@ Errors find_odd_places(const LoadedScene& scene) {
   return look.warnings;
 }
 
+Errors find_unsteady(const LoadedScene& scene, const State& settled) {
+  Look look(scene);
+  look.at_anchors({.organ = standing_of(scene.built.model, settled), .state = {}});
+  return look.warnings;
+}
+
 std::optional<Errors> find_oddities(const LoadedScene& scene, const std::function<bool()>& should_stop) {
   Look look(scene);
   look.at_points(), look.at_thin_parts(), look.at_overlaps();

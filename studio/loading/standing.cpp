@@ -17,7 +17,7 @@ Vec3 way_of(const Model& model, const State& state, std::size_t sphere) {
   return state.position[sphere] - model.rest_position[sphere];
 }
 
-OrganStanding standing_of(const Model& model, const State& state, const OrganRange& range) {
+OrganStanding one_standing(const Model& model, const State& state, const OrganRange& range) {
   OrganStanding standing;
   const auto first = std::size_t(range.first), last = first + std::size_t(range.count);
   if (first == last) return standing;
@@ -40,6 +40,12 @@ OrganStanding standing_of(const Model& model, const State& state, const OrganRan
 
 }  // namespace
 
+std::vector<OrganStanding> standing_of(const Model& model, const State& settled) {
+  std::vector<OrganStanding> standing;
+  for (const OrganRange& range : model.organs) standing.push_back(one_standing(model, settled, range));
+  return standing;
+}
+
 bool Standing::stands() const {
   return !is_refused && std::all_of(organ.begin(), organ.end(), [](const OrganStanding& o) { return o.stands(); });
 }
@@ -55,10 +61,7 @@ std::optional<Standing> settle_from(State rest, const scenes::SceneSpec& scene, 
   Standing standing;
   standing.state = std::move(rest);
   stepping::Stepper stepper(model);
-  const auto look = [&] {
-    standing.organ.clear();
-    for (const OrganRange& range : model.organs) standing.organ.push_back(standing_of(model, standing.state, range));
-  };
+  const auto look = [&] { standing.organ = standing_of(model, standing.state); };
   const auto fastest = [&] {
     double speed = 0;
     for (std::size_t i = 0; i < model.sphere_count(); ++i) speed = std::max(speed, norm(standing.state.velocity[i]));

@@ -32,6 +32,9 @@ struct Standing {
   bool stands() const;
 };
 
+/// How each organ of a State that has settled stands.   (organ_count)
+std::vector<OrganStanding> standing_of(const Model& model, const State& settled);
+
 /// Lets the Model of a scene come to rest as a session does before its first tick, for at most the scene's `settle_s`.
 /// Ends as soon as an organ sags by more than `most_sag` of its size; unset: never. None if `should_stop` ended it.
 /// `progress` gets the ticks that are done, and how many there can be at most. The second lays the Model's tools aside

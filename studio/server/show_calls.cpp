@@ -135,7 +135,9 @@ Result<std::string> measure_scene(Parameters& parameters, const CallContext& con
   if (!time) return Error{"", "stopped", ""};
   output::JsonWriter json;
   json.begin_object().member("measured_tick_time_s", *time).member("tick_s", model.tick);
-  return json.member("ticks", loading::kMeasuredTicks).end_object().text();
+  json.member("ticks", loading::kMeasuredTicks).key("warnings");
+  write_errors(json, loading::find_unsteady(kept->scene(), start->initial_state));
+  return json.end_object().text();
 }
 
 /// The scatter of the force on the scene's first ball, as `fidelity SCENE` measures it.

@@ -40,6 +40,7 @@ export interface TickTime {
   measured_tick_time_s: number;
   tick_s: number;
   ticks: number;
+  warnings: Problem[]; // of how the scene stands once it has settled
 }
 interface Checked {
   errors: Problem[];
@@ -222,7 +223,7 @@ export class AuthorScene {
   get problems(): Checked {
     const load = this.error instanceof CallFailed ? this.error.problems : [];
     const errors = this.checked?.errors.length ? this.checked.errors : load;
-    return { errors, warnings: errors.length ? this.checked?.warnings ?? [] : this.shown?.warnings ?? this.checked?.warnings ?? [] };
+    return { errors, warnings: errors.length ? this.checked?.warnings ?? [] : [...this.shown?.warnings ?? this.checked?.warnings ?? [], ...this.tickTime?.warnings ?? []] };
   }
 
   /** Draws the organs where the text has them by now. */
@@ -358,7 +359,7 @@ export class AuthorScene {
     };
     try {
       const time = await this.connection.call<TickTime>("scene.measure", { stage: kAuthorStage }, { signal: stop.signal, progress });
-      if (this.measuring === stop && !stop.signal.aborted) this.tickTime = time;
+      if (this.measuring === stop && !stop.signal.aborted) this.tickTime = time, this.underline();
     } catch {
       // It was stopped because the scene changed.
     }

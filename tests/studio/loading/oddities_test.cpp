@@ -11,6 +11,8 @@
 #include <sstream>
 #include <string>
 
+#include "studio/loading/standing.h"
+
 namespace ctpm {
 namespace {
 
@@ -59,6 +61,10 @@ TEST(Oddities, AnOrganThatFallsFarOntoItsTableIsOneAndOneThatLiesOnItIsNot) {
     ASSERT_TRUE(loaded) << to_string(loaded.errors().front());
     const std::optional<Errors> odd = loading::find_oddities(*loaded);
     ASSERT_TRUE(odd);
+    // A page learns it from the State that it has settled anyway.
+    const Errors unsteady =
+        loading::find_unsteady(*loaded, loading::settle_scene(loaded->scene.spec, loaded->built.model)->state);
+    EXPECT_EQ(unsteady.size(), odd->size());
     const auto falls = std::count_if(odd->begin(), odd->end(), [](const Error& error) {
       return error.message.find("/organs/0: nothing holds the organ where it is") != std::string::npos;
     });

@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { authorOf } from "./author_page.mjs";
-import { ctpm, leave, makeFolder, openStudio, outOfReach, picture, step } from "./browser.mjs";
+import { ctpm, leave, makeFolder, openStudio, outOfReach, picture, step, until } from "./browser.mjs";
 
 let folder, studio, page;
 const kScene = "kidney.json";
@@ -359,6 +359,12 @@ step("an organ stands on a table or a block that is added, and a forbidden zone 
   await picture(page, "author-zone");
   assert.deepEqual(await outOfReach(page), []);
   await save();
+  // An organ that nothing holds is told of, once it has been seen to fall.
+  const loose = JSON.parse(before);
+  delete loose.organs[0].anchors;
+  await write(JSON.stringify(loose));
+  await page.waitForSelector(".problem-list:has-text('nothing holds the organ, so that it falls')");
+  await page.waitForSelector(".verdict:has-text('1 warning')");
   await write(before);
   await save();
 });
@@ -368,7 +374,8 @@ step("what an organ and its layers are made of is chosen", async () => {
   const organ = async () => (await scene()).organs[0], old = (await organ()).layers;
   assert.equal(old.length, 1);
   await page.click("#tab-filling");
-  assert.deepEqual(await tissues.first().locator("option").allInnerTexts(), (await studio.call("scene.presets", {})).map(({ name }) => name));
+  const names = (await studio.call("scene.presets", {})).map(({ name }) => name);
+  assert.deepEqual(await until(() => tissues.first().locator("option").allInnerTexts(), ({ length }) => length === names.length), names);
   assert.deepEqual(await tissues.evaluateAll((all) => all.map(({ value }) => value)), ["kidney", "kidney"]);
   assert.ok((await organ()).material.stiffness_scale > 0);
   await tissues.first().selectOption("liver");
