@@ -123,7 +123,8 @@ class Trial {
   std::string judge() {
     const ProgramOutcome check = run_program({"check", "my/scene.json"});
     if (check.code != 0) return "check refuses: " + shape_of(first_line_with(check.err, "error: "));
-    for (const char* bad : {"sags by", "so that it falls", "hold every sphere", "cannot settle"})
+    for (const char* bad :
+         {"sags by", "so that it falls", "holds the organ where it is", "hold every sphere", "cannot settle"})
       if (check.err.find(bad) != std::string::npos) return "check warns: " + shape_of(first_line_with(check.err, bad));
     const std::string report = ctpm::testing::slurp(folder_ / "report.json");
     // Each organ has the volume of its mesh and then that of its spheres.
