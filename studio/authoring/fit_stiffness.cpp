@@ -37,6 +37,16 @@ void make_slow(scenes::MaterialSpec& material, double factor) {
   multiply_scale(material, factor);
 }
 
+/// The anchor without a word on where down is, which a scene without gravity does not know.
+void make_plane(scenes::AnchorSpec& anchor, const FilledOrgan& filled, Vec3 up) {
+  if (!anchor.lowest) return;
+  double lowest = INFINITY;
+  for (const Vec3& p : filled.surface.vertex.empty() ? filled.centre : filled.surface.vertex)
+    lowest = std::min(lowest, dot(p, up));
+  anchor.plane = scenes::PlaneRegion{(lowest + *anchor.lowest) * up, up};
+  anchor.lowest.reset();
+}
+
 /// The scene with that organ alone, without gravity and viscosity, and with the calibration's ball as its tool, which
 /// would push away what nothing holds.
 scenes::SceneSpec slow_scene(const scenes::SceneSpec& scene, std::size_t organ, const FilledOrgan& filled,
@@ -46,6 +56,7 @@ scenes::SceneSpec slow_scene(const scenes::SceneSpec& scene, std::size_t organ, 
   slow.organs = {scene.organs[organ]};
   scenes::OrganSpec& own = slow.organs[0];
   if (!own.rig && own.anchors.empty()) own.anchors = {usual_anchor(filled)};
+  for (scenes::AnchorSpec& anchor : own.anchors) make_plane(anchor, filled, up_in(scene));
   make_slow(own.material, factor);
   for (scenes::LayerSpec& layer : own.layers) make_slow(layer.material, factor);
   scenes::ToolSpec ball;

@@ -159,8 +159,10 @@ export function ImportForm({ connection, file, leftOut, open, onCancel, onDone }
 
   // Its mesh and its script need names too, of which the page knows nothing.
   useEffect(() => {
+    let isWanted = true;
     connection.call<{ path: string }>("scene.import_name", { path: (isAdded ? folder : "") + (/\.obj$/i.test(file.name) ? `${stem}-scene.json` : `${stem}.json`) })
-      .then(({ path }) => setFreeScene(path.slice(isAdded ? folder.length : 0)), setError);
+      .then(({ path }) => isWanted && setFreeScene(path.slice(isAdded ? folder.length : 0)), setError);
+    return () => void (isWanted = false);
   }, [connection, file, isAdded]);
 
   const tissue = presets.find((preset) => preset.name === organ);

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <sstream>
 #include <string>
 
 #include "core/stepping/step.h"
@@ -99,6 +102,30 @@ TEST(Fit, AnOrganThatLiesLooseIsHeldMeanwhile) {
   const Result<authoring::StiffnessFit> fit = authoring::fit_stiffness(spec, 0, scene->organs[0]);
   ASSERT_TRUE(fit) << to_string(fit.errors().front());
   EXPECT_NEAR(fit->factor, 1, 0.05) << "it has the scale of the same kidney that is held";
+}
+
+TEST(Fit, DoesNotDependOnWhereDownIs) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "ctpm_fit_down";
+  std::filesystem::create_directories(folder / "organs");
+  std::filesystem::copy_file(kScenes + "/organs/kidney.obj", folder / "organs/kidney.obj",
+                             std::filesystem::copy_options::overwrite_existing);
+  std::stringstream read;
+  read << std::ifstream(kScenes + "/kidney.json").rdbuf();
+  std::string text = read.str();
+  const auto add_after = [&](const std::string& what, const std::string& added) {
+    const std::size_t at = text.find(what);
+    ASSERT_NE(at, std::string::npos) << what;
+    text.insert(at + what.size(), added);
+  };
+  add_after("\"version\": 1,", "\"gravity_m_per_s2\": [0, -9.81, 0],");
+  add_after("\"model\": \"ctpm\",", "\"turn_deg\": [-90, 0, 0],");
+  std::ofstream(folder / "scene.json") << text;
+  const Result<loading::LoadedScene> scene = loading::load_whole_scene((folder / "scene.json").string());
+  ASSERT_TRUE(scene) << to_string(scene.errors().front());
+  ASSERT_TRUE(scene->scene.spec.organs[0].anchors.at(0).lowest);
+  const Result<authoring::StiffnessFit> fit = authoring::fit_stiffness(scene->scene.spec, 0, scene->organs[0]);
+  ASSERT_TRUE(fit) << to_string(fit.errors().front());
+  EXPECT_NEAR(fit->factor, 1, 0.01) << "the lattice lies in it as before";
 }
 
 TEST(Fit, AnOrganThatCannotMoveIsToldSo) {
