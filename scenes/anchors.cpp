@@ -52,15 +52,19 @@ std::string extent_of(const FilledOrgan& organ) {
 
 bool is_in(const ZoneSpec& zone, Vec3 point) { return is_in_region(zone, point); }
 
+double lowest_height(const FilledOrgan& organ, Vec3 gravity) {
+  // The lattice covers the surface, so its lowest spheres lie below the organ.
+  double lowest = INFINITY;
+  for (const Vec3& p : organ.surface.vertex.empty() ? organ.centre : organ.surface.vertex)
+    lowest = std::min(lowest, height(p, gravity));
+  return lowest;
+}
+
 Result<std::vector<std::int32_t>> select_anchored(const FilledOrgan& organ, const std::vector<AnchorSpec>& anchors,
                                                   Vec3 gravity, const std::string& where,
                                                   std::vector<std::int32_t>* counts) {
   if (organ.centre.empty()) return Error{where, "the organ has no spheres", ""};
-  // The lattice covers the surface, so its lowest spheres lie below the organ.
-  double lowest = INFINITY;
-  for (const Vec3& p : organ.surface.vertex) lowest = std::min(lowest, height(p, gravity));
-  if (organ.surface.vertex.empty())
-    for (const Vec3& p : organ.centre) lowest = std::min(lowest, height(p, gravity));
+  const double lowest = lowest_height(organ, gravity);
   std::vector<std::int32_t> selected, caught(anchors.size(), 0);
   for (std::size_t i = 0; i < organ.centre.size(); ++i) {
     bool is_anchored = false;

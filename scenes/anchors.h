@@ -10,6 +10,9 @@
 
 namespace ctpm::scenes {
 
+/// How high the organ's lowest point lies against gravity, along z where there is none [m].
+double lowest_height(const FilledOrgan& organ, Vec3 gravity);
+
 /// Spheres of the organ that any of its anchors holds, by index within the organ, ascending. `counts` receives the
 /// number of spheres of each anchor. Errors: an anchor that holds no sphere, at `where`/anchors/I, with the organ's
 /// extent.

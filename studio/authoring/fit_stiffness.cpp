@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/stepping/step.h"
+#include "scenes/anchors.h"
 #include "scenes/build_model.h"
 #include "scenes/places.h"
 #include "scenes/presets.h"
@@ -37,13 +38,10 @@ void make_slow(scenes::MaterialSpec& material, double factor) {
   multiply_scale(material, factor);
 }
 
-/// The anchor without a word on where down is, which a scene without gravity does not know.
-void make_plane(scenes::AnchorSpec& anchor, const FilledOrgan& filled, Vec3 up) {
+/// Says what lies lowest under `gravity` as a plane: the scene of a fit has no gravity.
+void make_plane(scenes::AnchorSpec& anchor, const FilledOrgan& filled, Vec3 gravity, Vec3 up) {
   if (!anchor.lowest) return;
-  double lowest = INFINITY;
-  for (const Vec3& p : filled.surface.vertex.empty() ? filled.centre : filled.surface.vertex)
-    lowest = std::min(lowest, dot(p, up));
-  anchor.plane = scenes::PlaneRegion{(lowest + *anchor.lowest) * up, up};
+  anchor.plane = scenes::PlaneRegion{(scenes::lowest_height(filled, gravity) + *anchor.lowest) * up, up};
   anchor.lowest.reset();
 }
 
@@ -56,7 +54,7 @@ scenes::SceneSpec slow_scene(const scenes::SceneSpec& scene, std::size_t organ, 
   slow.organs = {scene.organs[organ]};
   scenes::OrganSpec& own = slow.organs[0];
   if (!own.rig && own.anchors.empty()) own.anchors = {usual_anchor(filled)};
-  for (scenes::AnchorSpec& anchor : own.anchors) make_plane(anchor, filled, up_in(scene));
+  for (scenes::AnchorSpec& anchor : own.anchors) make_plane(anchor, filled, scene.gravity, up_in(scene));
   make_slow(own.material, factor);
   for (scenes::LayerSpec& layer : own.layers) make_slow(layer.material, factor);
   scenes::ToolSpec ball;

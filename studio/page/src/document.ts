@@ -250,7 +250,6 @@ export class SceneDocument {
     this.view.dispatch({ selection: { anchor: node.offset, head: node.offset + node.length }, annotations: Transaction.addToHistory.of(false) });
     // The text scrolls, and not the page with it: in a narrow window it is below the picture.
     const { scrollDOM } = this.view;
-    scrollDOM.scrollLeft = 0;
     scrollDOM.scrollTop = this.view.lineBlockAt(node.offset).top - scrollDOM.clientHeight / 2;
   }
 

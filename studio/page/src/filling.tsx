@@ -1,10 +1,11 @@
-import { useRef, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import type { AuthorScene, ShownOrgan } from "./author_scene";
 import type { Connection } from "./connection";
 import { Fit } from "./fit";
 import { listOf } from "./items";
 import { findJson, parseJson } from "./json_edit";
 import { Problems, Readings, Section, ShownCommand, Working } from "./parts";
+import type { Preset } from "./protocol";
 import { kAnchored } from "./stage_scene";
 import { command, millimetres, ofStep } from "./text";
 import { Tissue } from "./tissue";
@@ -25,12 +26,14 @@ interface Scatter {
 
 /** Radii of the spheres: how many there are then, what a tick costs, how much the force depends on how they lie. */
 export function Filling({ connection, scene, chosen }: { connection: Connection; scene: AuthorScene; chosen: number | null }) {
-  const organs = listOf(scene.doc?.lastValue, "organs").map((organ, i) => [organ, i] as const);
-  const sorted = organs.sort(([, a], [, b]) => Number(b === chosen) - Number(a === chosen)); // the one that is worked on comes first
+  const [presets, setPresets] = useState<Preset[]>([]);
+  useEffect(() => void connection.call<Preset[]>("scene.presets").then(setPresets, () => {}), [connection]);
+  const organs = listOf(scene.doc?.lastValue, "organs").map((organ, i) => ({ organ: i, name: String(organ.name ?? `organ ${i + 1}`), key: `${scene.doc?.path} ${i}`, isRig: !!organ.rig }));
+  const filled = organs.filter(({ isRig }) => !isRig).sort((a, b) => Number(b.organ === chosen) - Number(a.organ === chosen)); // the one that is worked on comes first
   return (
     <>
-      {sorted.map(([organ, i]) => organ.rig ? null : <OrganFilling key={`${scene.doc?.path} ${i}`} connection={connection} scene={scene} organ={i} name={String(organ.name ?? `organ ${i + 1}`)} />)}
-      {sorted.map(([organ, i]) => organ.rig ? null : <Tissue key={`${scene.doc?.path} ${i}`} connection={connection} scene={scene} organ={i} name={String(organ.name ?? `organ ${i + 1}`)} />)}
+      {filled.map(({ organ, name, key }) => <OrganFilling key={key} connection={connection} scene={scene} organ={organ} name={name} />)}
+      {filled.map(({ organ, name, key }) => <Tissue key={key} presets={presets} scene={scene} organ={organ} name={name} />)}
       <Cost scene={scene} />
       <ScatterOf connection={connection} scene={scene} />
     </>

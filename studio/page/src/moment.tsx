@@ -64,7 +64,7 @@ export function Moment({ connection, player, frame, other }: { connection: Conne
     setProgress(null);
   };
   const depthOf = (stage: number, { tool, depth }: { tool: number; depth: number }, isGlimpse: boolean) =>
-    isGlimpse && player.tracks.get(stage)?.session.view.tools[tool]?.kind === "scalpel" ? "–" : millimetres(depth, 2); // of a blade it is known once the moment is
+    isGlimpse && player.tracks.get(stage)?.session.view.tools[tool]?.kind === "scalpel" ? "–" : millimetres(depth, 2); // a glimpse does not know that of a blade
   const rows = (shown: ShownFrame, stage: number): [string, string][] => shown ? [
     ["force", newtons(Math.hypot(...shown.force))],
     ["depth", depthOf(stage, shown, shown.isGlimpse)],

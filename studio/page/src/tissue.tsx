@@ -1,9 +1,7 @@
 // What an organ is made of: its tissue, and that of its layers from the skin inwards.
 import type { JSONPath } from "jsonc-parser";
-import { useEffect, useState } from "preact/hooks";
 import * as three from "three";
 import type { AuthorScene } from "./author_scene";
-import type { Connection } from "./connection";
 import { NumberField } from "./fields";
 import { type Fields, isFields, listOf } from "./items";
 import type { Json } from "./json_edit";
@@ -20,10 +18,8 @@ function materialAs(preset: string, before: Fields): Json {
   return { preset, ...(before.prestrain === undefined ? {} : { prestrain: before.prestrain }) };
 }
 
-/** `organ`: its place in the list. */
-export function Tissue({ connection, scene, organ, name }: { connection: Connection; scene: AuthorScene; organ: number; name: string }) {
-  const [presets, setPresets] = useState<Preset[]>([]);
-  useEffect(() => void connection.call<Preset[]>("scene.presets").then(setPresets, () => {}), [connection]); // what a scene can name
+/** `organ`: its place in the list. `presets`: those that a scene can name. */
+export function Tissue({ presets, scene, organ, name }: { presets: Preset[]; scene: AuthorScene; organ: number; name: string }) {
   const doc = scene.doc!, path: JSONPath = ["organs", organ], fields = listOf(doc.lastValue, "organs")[organ] ?? {}, layers = listOf(fields, "layers");
   const choice = (label: string, of: Fields, at: JSONPath) => (
     <label class="field"><span>{label}</span>
@@ -42,9 +38,10 @@ export function Tissue({ connection, scene, organ, name }: { connection: Connect
     );
   };
   const depthOf = (layer: Fields | undefined) => (typeof layer?.to_depth_mm === "number" ? layer.to_depth_mm : 0);
-  const box = new three.Box3().setFromArray(scene.stage?.organSpheres[organ]?.centre ?? []), middle = box.isEmpty() ? 0 : 500 * Math.min(...box.getSize(new three.Vector3())); // its depth there, about [mm]
   /** A new layer is of the same tissue as what it lies in, until another one is chosen. */
   const add = () => {
+    const box = new three.Box3().setFromArray(scene.stage?.organSpheres[organ]?.centre ?? []);
+    const middle = box.isEmpty() ? 0 : 500 * Math.min(...box.getSize(new three.Vector3())); // how deep it lies, about [mm]
     const last = depthOf(layers.at(-1)), deeper = Number((middle > last ? (last + middle) / 2 : last + 1).toPrecision(3));
     const { fitted_for: _, ...material } = materialOf(layers.at(-1) ?? fields);
     doc.set([[[...path, "layers", layers.length], { to_depth_mm: deeper, material }]]);
