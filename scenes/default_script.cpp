@@ -183,7 +183,8 @@ Script organ_script(const SceneSpec& scene, std::span<const FilledOrgan> organs,
     return std::find_if(scene.tools.begin(), scene.tools.end(), [&](const ToolSpec& t) { return t.kind == kind; });
   };
   const auto ball = first_of(ToolKind::ball), scalpel = first_of(ToolKind::scalpel), none = scene.tools.end();
-  if (ball != none) add_press(script, *ball, table, seen(0.35 + at.along, 0.12), depth, 0.5);
+  if (ball != none && !(at.cuts_first && scalpel != none))
+    add_press(script, *ball, table, seen(0.35 + at.along, 0.12), depth, 0.5);
   if (scalpel != none && at.cuts_through)
     add_cut(script, *scalpel, table, path_through(top, 0.42 + at.along), size.z);
   else if (scalpel != none)

@@ -116,6 +116,7 @@ struct ScriptPlace {
   double along = 0;           ///< moves its places by this share of the organ's length
   bool cuts_through = false;  ///< the blade is drawn through the whole organ, from back to front
   double depth_share = 1;     ///< of the usual depth of a cut that does not go through
+  bool cuts_first = false;    ///< nothing is pressed before the cut
 };
 
 /// The steps of default_script() for organ `index`.

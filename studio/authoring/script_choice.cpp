@@ -10,8 +10,9 @@
 namespace ctpm::authoring {
 namespace {
 
-/// The usual place first, then others.
-constexpr scenes::ScriptPlace kPlaces[] = {{}, {0.12}, {-0.12}, {0.24}, {-0.24}};
+/// The usual place first, there without the press before the cut too (a wall that stands on its edge folds away under
+/// it, so that the blade finds nothing), then others.
+constexpr scenes::ScriptPlace kPlaces[] = {{}, {.cuts_first = true}, {0.12}, {-0.12}, {0.24}, {-0.24}};
 /// Right through the organ, where what holds it may be near.
 constexpr scenes::ScriptPlace kThrough[] = {{0, true},     {0.3, true},  {-0.3, true}, {0.15, true},
                                             {-0.15, true}, {0.45, true}, {-0.38, true}};
@@ -89,7 +90,7 @@ std::optional<ScriptChoice> choose_script(const scenes::SceneSpec& scene, const 
   for (scenes::ScriptPlace place : kPlaces) {
     if (!try_at(place)) return std::nullopt;
     // Where an organ gives way before it is cut, a blade that is less deep may cut it.
-    const bool goes_on = place.along == 0 || best->works();
+    const bool goes_on = (place.along == 0 && !place.cuts_first) || best->works();
     for (const double share : kShallower) {
       if (!goes_on || !best->drags) break;
       place.depth_share = share;

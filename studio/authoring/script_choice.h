@@ -26,9 +26,10 @@ struct ScriptChoice {
 };
 
 /// Finds a script that touches and cuts the only organ of `scene`, `filled` at rest, where it has settled: at the usual
-/// place first, then at others, then right through it; else one that touches it. Where a blade takes the organ along,
-/// it goes in less deep; of those that go through, one is sought that turns no tissue inside out. `is_timed`: each is
-/// run to its end, so that the times of its ticks are those of the whole cut. None if `should_stop` ended it.
+/// place first, then without a press before the cut, then at others, then right through it; else one that touches it.
+/// Where a blade takes the organ along, it goes in less deep; of those that go through, one is sought that turns no
+/// tissue inside out. `is_timed`: each is run to its end, so that the times of its ticks are those of the whole cut.
+/// None if `should_stop` ended it.
 std::optional<ScriptChoice> choose_script(const scenes::SceneSpec& scene, const FilledOrgan& filled,
                                           const AnchorChoice& standing, bool is_timed,
                                           const std::function<bool()>& should_stop);
