@@ -15,6 +15,7 @@ import { Empty, Problems, Readings, Section, ShownCommand } from "./parts";
 import type { CameraView, Listing } from "./protocol";
 import { SceneEditor } from "./scene_editor";
 import { SceneList } from "./scene_list";
+import { Behaviour } from "./settings";
 import type { Shown } from "./stage_scene";
 import { command, freePath, isFileName, ofStep, verdictOf } from "./text";
 import { kTurns, Viewer } from "./viewer";
@@ -377,6 +378,7 @@ function About({ scene }: { scene: AuthorScene }) {
           <textarea rows={3} value={typeof task === "string" ? task : ""} onInput={(e) => doc!.preview([[["task"], taskOf(e.currentTarget.value)]])} onChange={() => doc!.commit()} />
         </label>
       </Section>
+      <Behaviour scene={scene} />
       {shown && (
         <Section title={shown.view.name}>
           <div class="numbers" aria-busy={scene.isRefilling}>
@@ -389,7 +391,6 @@ function About({ scene }: { scene: AuthorScene }) {
           <ShownCommand text={command("check", doc!.path)} />
         </Section>
       )}
-      {listOf(doc!.lastValue, "organs").length > 1 && <Meeting scene={scene} />}
       {shown?.organs.map((organ, i) => organ.report && (
         <Section key={i} title={`${shown.view.organs[i].name}: its mesh`}>
           {organ.findings.length === 0 ? <p class="hint">Nothing is left to repair in the file that the scene names.</p> : <Findings findings={organ.findings} />}
@@ -400,16 +401,3 @@ function About({ scene }: { scene: AuthorScene }) {
   );
 }
 
-/** Whether several organs push each other away. */
-function Meeting({ scene: { doc } }: { scene: AuthorScene }) {
-  const meets = findJson(doc!.lastValue, ["organs_meet"]) === true;
-  return (
-    <Section title="Several organs">
-      <label class="tick">
-        <input type="checkbox" checked={meets} onChange={() => doc!.set([[["organs_meet"], !meets]])} />
-        <span>they touch each other; otherwise they pass through each other</span>
-      </label>
-      <p class="hint">Organs that touch cost time where they are near each other: where they lie on each other, a step may take several times as long.</p>
-    </Section>
-  );
-}

@@ -6,9 +6,9 @@ import type { Connection } from "./connection";
 import { SceneDocument } from "./document";
 import { dropKept, moveKept } from "./drafts";
 import { type Item, itemsOf, listOf, type OrganPose, organPoses } from "./items";
-import type { Json } from "./json_edit";
+import { findJson, type Json } from "./json_edit";
 import { CallFailed, type Problem, type SceneView, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
-import type { Schema } from "./scene_schema";
+import { type Schema, schemaAt } from "./scene_schema";
 import { StageScene, type Shown } from "./stage_scene";
 import { firstCamera, type Viewer } from "./viewer";
 
@@ -195,6 +195,11 @@ export class AuthorScene {
   deleted(path: string, folder: string): void {
     dropKept(`${folder}/${path}`);
     documents.delete(`${folder}/${path}`);
+  }
+
+  /** What the text says at a path, else what the program takes where nothing is said. */
+  settingAt(path: JSONPath): Json | undefined {
+    return findJson(this.doc?.lastValue, path) ?? (this.schema ? (schemaAt(this.schema, path)?.default as Json | undefined) : undefined);
   }
 
   get items(): Item[] {

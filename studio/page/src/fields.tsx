@@ -26,12 +26,12 @@ export function NumberField({ label, value, unit, step, least, hasOwnUnit = fals
   onInput: (value: number) => void;
   onDone: () => void;
 }) {
-  const shown = Number.isFinite(value) ? String(value) : "", latest = useRef(shown);
+  const shown = Number.isFinite(value) ? String(value) : "", latest = useRef(shown), named = unit ? `${label} [${unit}]` : label;
   latest.current = shown;
   return (
     <label class="number-field">
-      <span>{label}{hasOwnUnit && ` [${unit}]`}</span>
-      <NumberInput step={step} value={shown} aria-label={`${label} [${unit}]`}
+      <span>{hasOwnUnit ? named : label}</span>
+      <NumberInput step={step} value={shown} aria-label={named}
         onInput={(e) => {
           const number = e.currentTarget.valueAsNumber;
           // Not by the input's own least: its arrow keys would count steps from there.

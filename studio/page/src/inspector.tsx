@@ -5,6 +5,7 @@ import { kFineNudge, kNudge, type Values } from "./gizmos";
 import { type Item, mm, mmVector } from "./items";
 import { findJson, type Json } from "./json_edit";
 import { Section } from "./parts";
+import { OrganBehaviour } from "./settings";
 import type { Viewer } from "./viewer";
 
 const kTurning = "In the picture a drag turns the view, and the wheel zooms.";
@@ -54,6 +55,7 @@ export function Inspector({ scene, item, viewer, onRemove }: { scene: AuthorScen
           {vector("place of the mesh's origin", ["at_mm"], [0, 0, 0])}
           {vector("turned about x, then y, then z", ["turn_deg"], [0, 0, 0], "degrees", 5)}
           {number("scale of the mesh", ["scale"], 1, "times", 0.05, 0.001)}
+          <OrganBehaviour scene={scene} organ={Number(item.path[1])} />
         </>
       )}
       {(item.shape === "ball" || item.shape === "scalpel") && (

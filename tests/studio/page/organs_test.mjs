@@ -192,10 +192,49 @@ step("what belongs to an organ goes with it, unless its author says otherwise", 
   await settled();
 });
 
+step("how a scene and its organs behave is chosen without the text", async () => {
+  const before = await text(), was = JSON.parse(before);
+  await page.click("#tab-scene");
+  const down = page.locator("#panel label:has-text('down is') select"), chosen = async () => (await scene()).gravity_m_per_s2;
+  assert.equal(await down.inputValue(), "-z");
+  await down.selectOption("-y");
+  assert.deepEqual(await chosen(), [0, -9.81, 0]);
+  await down.selectOption({ label: "nowhere: no gravity" });
+  assert.deepEqual(await chosen(), [0, 0, 0]);
+  await down.selectOption("+x");
+  assert.deepEqual(await chosen(), [9.81, 0, 0], "as strong as on earth again");
+  await page.click("#panel label:has-text('two hands')");
+  await page.click("#panel label:has-text('sides of a cut')");
+  await page.locator("#panel label:has-text('friction') input").fill("0.6");
+  await page.keyboard.press("Tab");
+  const { hands, lips_meet, contact_friction } = await scene();
+  assert.deepEqual([hands, lips_meet, contact_friction], [2, !was.lips_meet, 0.6]);
+  await picture(page, "author-behaviour");
+  await page.locator(".objects button", { has: page.locator('span:text-is("kidney")') }).click();
+  await page.locator("#panel label:has-text('harmed by a force') input").fill("4.5");
+  await page.keyboard.press("Tab");
+  await page.locator("#panel label:has-text('harmed by a press') input").fill("12");
+  await page.keyboard.press("Tab");
+  await page.locator("#panel label:has-text('pieces touch each other') input").click();
+  await page.locator("#panel label:has-text('colour outside') input").fill("#3366ff");
+  const [kidney] = (await scene()).organs;
+  assert.deepEqual([kidney.damage_force_n, kidney.damage_depth_mm, kidney.meets_itself, kidney.surface_color], [4.5, 12, true, [0.2, 0.4, 1]]);
+  await write(JSON.stringify({ ...await scene(), gravity_m_per_s2: [0, -6, -8] }));
+  await settled();
+  await page.waitForSelector(".verdict.good");
+  await picture(page, "author-organ-behaviour");
+  await page.click("#tab-scene");
+  assert.equal(await down.inputValue(), "other");
+  await down.selectOption("-z");
+  assert.deepEqual(await chosen(), [0, 0, -10], "as strong as it was");
+  await write(before);
+  await settled();
+});
+
 step("organs are told to touch each other, removed, and the scene is saved under another name", async () => {
   const before = await text();
   await page.click("#tab-scene");
-  const touch = page.locator("#panel label:has-text('they touch each other') input");
+  const touch = page.locator("#panel label:has-text('organs touch each other') input");
   await touch.click();
   assert.equal((await scene()).organs_meet, true);
   await touch.click();
