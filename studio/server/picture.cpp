@@ -145,15 +145,17 @@ std::string shapes_message(const Model& model, std::uint32_t stage) {
   return std::move(out.text);
 }
 
-std::string spheres_message(const Model& model, std::uint32_t stage) {
+std::string spheres_message(const Model& model, const std::vector<views::OrganTissues>& tissues, std::uint32_t stage) {
   MessageBytes out;
   out.add(std::uint32_t(kSpheres)), out.add(stage), out.add(std::uint32_t(model.organs.size()));
-  for (const OrganRange& organ : model.organs) {
+  for (std::size_t o = 0; o < model.organs.size(); ++o) {
+    const OrganRange& organ = model.organs[o];
     const std::size_t first = std::size_t(organ.first), end = first + std::size_t(organ.count);
     out.add(std::uint32_t(organ.count)), out.add(float(organ.sphere_radius));
     for (std::size_t i = first; i < end; ++i) out.add(model.rest_position[i]);
     for (std::size_t i = first; i < end; ++i) out.add(std::uint8_t(std::min(model.layer[i], 255)));
     for (std::size_t i = first; i < end; ++i) out.add(std::uint8_t(model.held_axes[i] == kAnchored ? 1 : 0));
+    for (const std::int32_t tissue : tissues[o].of_sphere) out.add(std::uint8_t(std::min(tissue, 255)));
     out.pad();
   }
   return std::move(out.text);

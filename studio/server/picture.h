@@ -12,6 +12,7 @@
 #include "core/stepping/step.h"
 #include "studio/render/expert_cut.h"
 #include "studio/server/drawn_cuts.h"
+#include "studio/views/view_of_scene.h"
 
 namespace ctpm::server {
 
@@ -96,7 +97,7 @@ std::int64_t severed_in(const State& state);
 /// Message with the shapes of a Model's tools and obstacles, in the Model's order.
 std::string shapes_message(const Model& model, std::uint32_t stage);
 
-/// Message with the spheres of a Model at rest.
-std::string spheres_message(const Model& model, std::uint32_t stage);
+/// Message with the spheres of a Model at rest, and of which of its organ's tissues each is.
+std::string spheres_message(const Model& model, const std::vector<views::OrganTissues>& tissues, std::uint32_t stage);
 
 }  // namespace ctpm::server

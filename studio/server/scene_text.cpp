@@ -66,6 +66,16 @@ void write_findings(output::JsonWriter& json, const std::vector<importers::Findi
   json.end_list();
 }
 
+void write_tissues(output::JsonWriter& json, const views::OrganTissues& organ) {
+  json.key("tissues").begin_list();
+  for (const views::TissueOfOrgan& tissue : organ.tissue) {
+    json.begin_object().member("text", tissue.text).member("spheres", tissue.spheres);
+    write_colour(json, "colour", tissue.colour);
+    json.end_object();
+  }
+  json.end_list();
+}
+
 std::string view_json(const scenes::SceneSpec& scene, const Model& model) {
   const render::SceneView view = views::view_of(scene, model);
   output::JsonWriter json;

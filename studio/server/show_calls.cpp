@@ -14,6 +14,7 @@
 #include "studio/server/call_table.h"
 #include "studio/server/picture.h"
 #include "studio/server/scene_text.h"
+#include "studio/views/view_of_scene.h"
 
 namespace ctpm::server {
 namespace {
@@ -25,7 +26,8 @@ std::uint32_t stage_of(Parameters& parameters, const CallContext& context) {
 }
 
 /// What is known of each organ's mesh and spheres.
-void write_organs(output::JsonWriter& json, const loading::LoadedScene& scene) {
+void write_organs(output::JsonWriter& json, const loading::LoadedScene& scene,
+                  const std::vector<views::OrganTissues>& tissues) {
   const Model& model = scene.built.model;
   json.begin_list();
   for (std::size_t i = 0; i < scene.organs.size(); ++i) {
@@ -40,6 +42,7 @@ void write_organs(output::JsonWriter& json, const loading::LoadedScene& scene) {
     json.member("shape_error", is_filled ? importers::to_text(report.fill.shape) : std::string());
     json.member("thin_parts", fidelity::thin_parts_text(scene.organs[i])).key("findings");
     write_findings(json, report.findings);
+    write_tissues(json, tissues[i]);
     json.end_object();
   }
   json.end_list();
@@ -74,10 +77,11 @@ Result<std::string> show_scene(Parameters& parameters, const CallContext& contex
   const loading::LoadedScene& scene = kept->scene();
   const Model& model = scene.built.model;
   output::JsonWriter organs;
-  write_organs(organs, scene);
+  const std::vector<views::OrganTissues> tissues = views::tissues_of(scene.scene.spec, scene.organs);
+  write_organs(organs, scene, tissues);
   PictureMaker maker(model, stage);
   context.desk->outbox().send_bytes(shapes_message(model, stage));
-  context.desk->outbox().send_bytes(spheres_message(model, stage));
+  context.desk->outbox().send_bytes(spheres_message(model, tissues, stage));
   context.desk->outbox().show(maker.make(rest_state(model), {}));
   context.desk->keep(stage, kept);
   Errors warnings = scene.scene.warnings;

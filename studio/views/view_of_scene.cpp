@@ -86,17 +86,15 @@ render::SceneView view_of(const scenes::SceneSpec& scene, const Model& model) {
   return view;
 }
 
-std::vector<std::string> colour_by_material(const scenes::SceneSpec& scene, std::span<const FilledOrgan> organs,
-                                            render::SceneView& view) {
-  std::vector<std::string> legend;
-  view.sphere_colours.clear();
+std::vector<OrganTissues> tissues_of(const scenes::SceneSpec& scene, std::span<const FilledOrgan> organs) {
+  std::vector<OrganTissues> all;
+  std::size_t colours = 0;
   for (std::size_t o = 0; o < organs.size(); ++o) {
     const scenes::OrganSpec& organ = scene.organs[o];
-    const std::size_t first = legend.size();
-    const auto colour_of = [](std::size_t number) { return kMaterials[number % std::size(kMaterials)]; };
+    OrganTissues tissues;
     const auto add = [&](const scenes::MaterialSpec& material, const std::string& where) {
-      legend.push_back(std::string(colour_of(legend.size()).name) + ": " + organ.name + ", " + name_of(material) +
-                       where);
+      const NamedColour& own = kMaterials[colours++ % std::size(kMaterials)];
+      tissues.tissue.push_back({name_of(material) + where, std::string(own.name), own.colour});
     };
     for (const scenes::LayerSpec& layer : organ.layers)
       add(layer.material, " down to " + output::short_number(1e3 * layer.to_depth) + " mm");
@@ -104,8 +102,24 @@ std::vector<std::string> colour_by_material(const scenes::SceneSpec& scene, std:
     for (const double depth : organs[o].depth) {
       const auto layer = std::find_if(organ.layers.begin(), organ.layers.end(),
                                       [&](const scenes::LayerSpec& l) { return l.to_depth > depth; });
-      view.sphere_colours.push_back(colour_of(first + std::size_t(layer - organ.layers.begin())).colour);
+      tissues.of_sphere.push_back(std::int32_t(layer - organ.layers.begin()));
+      ++tissues.tissue[std::size_t(tissues.of_sphere.back())].spheres;
     }
+    all.push_back(std::move(tissues));
+  }
+  return all;
+}
+
+std::vector<std::string> colour_by_material(const scenes::SceneSpec& scene, std::span<const FilledOrgan> organs,
+                                            render::SceneView& view) {
+  std::vector<std::string> legend;
+  view.sphere_colours.clear();
+  const std::vector<OrganTissues> tissues = tissues_of(scene, organs);
+  for (std::size_t o = 0; o < tissues.size(); ++o) {
+    for (const TissueOfOrgan& tissue : tissues[o].tissue)
+      legend.push_back(tissue.colour_name + ": " + scene.organs[o].name + ", " + tissue.text);
+    for (const std::int32_t tissue : tissues[o].of_sphere)
+      view.sphere_colours.push_back(tissues[o].tissue[std::size_t(tissue)].colour);
   }
   return legend;
 }

@@ -7,7 +7,7 @@ import { SceneDocument } from "./document";
 import { dropKept, moveKept } from "./drafts";
 import { type Item, itemsOf, listOf, type OrganPose, organPoses } from "./items";
 import { findJson, type Json } from "./json_edit";
-import { CallFailed, type Problem, type SceneView, type Shapes, type Spheres, type Triangles, type WaitingFrame } from "./protocol";
+import { CallFailed, type Problem, type SceneView, type Shapes, type Spheres, type TissueSpheres, type Triangles, type WaitingFrame } from "./protocol";
 import { type Schema, schemaAt } from "./scene_schema";
 import { StageScene, type Shown } from "./stage_scene";
 import { firstCamera, type Viewer } from "./viewer";
@@ -28,6 +28,7 @@ export interface ShownOrgan {
   thin_parts: string; // the same; empty: none is too thin for its spheres
   report: string;
   findings: Finding[];
+  tissues: TissueSpheres[]; // of its layers of tissue, outermost first, and of what lies below
 }
 export interface ShownScene {
   view: SceneView;
@@ -337,7 +338,7 @@ export class AuthorScene {
     const stage = new StageScene(shown.view);
     for (const message of this.received.splice(0))
       if (message.kind === "shapes") stage.setShapes(message);
-      else if (message.kind === "spheres") stage.setSpheres(message);
+      else if (message.kind === "spheres") stage.setSpheres(message, shown.organs.map(({ tissues }) => tissues));
       else if (message.kind === "triangles") stage.setTriangles(message);
       else stage.wait(message);
     stage.takeFrame();

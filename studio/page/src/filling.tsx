@@ -61,6 +61,8 @@ function OrganFilling({ connection, scene, organ, name }: { connection: Connecti
   };
   const layers = new Map<number, number>();
   for (const layer of spheres?.layer ?? []) layers.set(layer, (layers.get(layer) ?? 0) + 1);
+  const isByTissue = (shown?.tissues.length ?? 0) > 1;
+  const kinds = isByTissue ? shown!.tissues : [...layers].sort(([a], [b]) => a - b).map(([layer, count]) => ({ text: `layer ${layer}`, spheres: count, colour: view?.organs[organ]?.layer_colours[layer - 1] }));
   return (
     <Section title={`${name}: its spheres`}>
       <label class="field slider">
@@ -71,9 +73,9 @@ function OrganFilling({ connection, scene, organ, name }: { connection: Connecti
       <div class="numbers" aria-busy={scene.isRefilling}>
         {shown && <Readings rows={[["spheres", String(shown.spheres)], ["never move", String(shown.anchored)]]} />}
         {shown?.shape_error && <Shape shown={shown} apart={Number((2 * radius + gap).toPrecision(4))} />}
-        <ul class="layers" aria-label="Spheres by layer">
-          {[...layers].sort(([a], [b]) => a - b).map(([layer, count]) => (
-            <li key={layer}><i style={{ background: cssOf(view?.organs[organ]?.layer_colours[layer - 1]) }} />layer {layer}<span class="number">{count}</span></li>
+        <ul class={`layers ${isByTissue ? "tissues" : ""}`} aria-label={`Spheres by ${isByTissue ? "tissue" : "layer"}`}>
+          {kinds.map(({ text, spheres, colour }) => (
+            <li key={text}><i style={{ background: cssOf(colour) }} />{text}<span class="number">{spheres}</span></li>
           ))}
           {shown && shown.anchored > 0 && <li key="anchored"><i style={{ background: kAnchored }} />never moves</li>}
         </ul>

@@ -260,11 +260,19 @@ export interface Shapes {
   obstacles: ToolShape[]; // in the scene's frame
 }
 
+/** Spheres of an organ that are of one tissue. */
+export interface TissueSpheres {
+  text: string;
+  spheres: number;
+  colour: Vector;
+}
+
 export interface OrganSpheres {
   radius: number;
   centre: Float32Array; // x y z of each
   layer: Uint8Array; // 1: outermost
   anchored: Uint8Array; // 1: never moves
+  tissue: Uint8Array; // which of the organ's
 }
 
 export interface Spheres {
@@ -388,7 +396,7 @@ function readSpheres(r: Reader): Spheres {
   const organs: OrganSpheres[] = [];
   for (let i = 0; i < count; ++i) {
     const spheres = r.u32(), radius = r.f32(), centre = r.array(Float32Array, 4, 3 * spheres);
-    organs.push({ radius, centre, layer: r.array(Uint8Array, 1, spheres), anchored: r.array(Uint8Array, 1, spheres) });
+    organs.push({ radius, centre, layer: r.array(Uint8Array, 1, spheres), anchored: r.array(Uint8Array, 1, spheres), tissue: r.array(Uint8Array, 1, spheres) });
     r.pad();
   }
   return { kind: "spheres", stage, organs };

@@ -1,5 +1,5 @@
 import * as three from "three";
-import { type ExpertMarks, type Frame, type HandFrame, type OrganSpheres, readWaitingFrame, type SceneView, type Shapes, type Spheres, type ToolShape, type Triangles, type Vector, type WaitingFrame } from "./protocol";
+import { type ExpertMarks, type Frame, type HandFrame, type OrganSpheres, readWaitingFrame, type SceneView, type Shapes, type Spheres, type TissueSpheres, type ToolShape, type Triangles, type Vector, type WaitingFrame } from "./protocol";
 import type { OrganPose } from "./items";
 import { ExpertLine } from "./expert_line";
 import { OrganMesh, organMaterials } from "./organ_mesh";
@@ -64,16 +64,18 @@ export class StageScene {
     return this.tools[tool]?.geometry ?? null;
   }
 
-  /** The spheres at rest, which show() shows. */
-  setSpheres(spheres: Spheres): void {
+  /** The spheres at rest, which show() shows: by tissue where an organ has several, else by layer. */
+  setSpheres(spheres: Spheres, tissues: TissueSpheres[][]): void {
     for (const mesh of this.spheres) this.scene.remove(mesh), mesh.dispose();
     this.organSpheres = spheres.organs;
-    this.spheres = spheres.organs.map((organ, i) => sphereMesh(organ, this.view.organs[i].layer_colours));
+    this.spheres = spheres.organs.map((organ, i) => (tissues[i].length > 1
+      ? sphereMesh(organ, organ.tissue, tissues[i].map(({ colour }) => colour))
+      : sphereMesh(organ, organ.layer.map((layer) => layer - 1), this.view.organs[i].layer_colours)));
     for (const mesh of this.spheres) this.scene.add(mesh);
     this.show(this.shown);
   }
 
-  /** The surfaces, the spheres by layer, or both. */
+  /** The surfaces, the spheres, or both. */
   show(shown: Shown): void {
     this.shown = shown;
     for (const organ of this.organs) organ.show(shown === "surface" ? "tissue" : shown === "both" ? "glass" : "nothing");
@@ -245,15 +247,15 @@ function geometryOf(shape: ToolShape): three.BufferGeometry {
 }
 
 /** The spheres of an organ in the colours of their layers; those that never move are blue. */
-function sphereMesh(spheres: OrganSpheres, colours: Vector[]): three.InstancedMesh {
-  const count = spheres.layer.length;
+/** `kind`: which of the colours each sphere has; the last one stands for more. */
+function sphereMesh(spheres: OrganSpheres, kind: Uint8Array, colours: Vector[]): three.InstancedMesh {
+  const count = kind.length;
   const shape = new three.SphereGeometry(spheres.radius, 12, 8);
   const mesh = new three.InstancedMesh(shape, new three.MeshPhongMaterial({ specular: 0x222222 }), count);
   const colour = new three.Color();
   for (let i = 0; i < count; ++i) {
-    const layer = colours[Math.min(spheres.layer[i], colours.length) - 1] ?? [0.6, 0.6, 0.6];
     if (spheres.anchored[i]) colour.set(kAnchored);
-    else colour.setRGB(...layer, three.SRGBColorSpace);
+    else colour.setRGB(...(colours[Math.min(kind[i], colours.length - 1)] ?? [0.6, 0.6, 0.6]), three.SRGBColorSpace);
     mesh.setColorAt(i, colour);
   }
   mesh.frustumCulled = false;

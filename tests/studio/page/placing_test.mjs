@@ -396,7 +396,14 @@ step("what an organ and its layers are made of is chosen", async () => {
   assert.match(await page.locator(".author .side").innerText(), /deeper than the organ/);
   await depths.nth(1).fill("10.5");
   await page.waitForSelector(".verdict.good");
+  await settled();
+  // Spheres are told and coloured by tissue.
+  const kinds = page.locator("#panel ul[aria-label='Spheres by tissue'] li"), counts = (await kinds.locator(".number").allInnerTexts()).map(Number);
+  assert.deepEqual((await kinds.allInnerTexts()).map((text) => text.replace(/\s*\d+$/, "")), ["spleen down to 3 mm", "skin down to 10.5 mm", "liver below", "never moves"]);
+  assert.equal(counts.reduce((sum, count) => sum + count), Number(/spheres\s+(\d+)/.exec(await page.locator("#panel .numbers").first().innerText())[1]));
+  await button("spheres", ".view-bar").click();
   await picture(page, "author-tissue");
+  await button("surface", ".view-bar").click();
   await save();
   for (let i = 0; i < 2; ++i) await page.locator("#panel .layer .remove").first().click();
   assert.equal((await organ()).layers, undefined);
