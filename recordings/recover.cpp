@@ -6,6 +6,7 @@
 
 #include "core/stepping/step.h"
 #include "recordings/internal/rescue.h"
+#include "recordings/internal/schema.h"
 #include "recordings/internal/session_store.h"
 #include "recordings/internal/whole_writer.h"
 #include "recordings/state_hash.h"
@@ -197,6 +198,10 @@ Result<Attempt> salvage_all(const std::string& path) {
   if (!store) return store.errors();
   Attempt attempt;
   attempt.store = std::move(*store);
+  if (const int version = attempt.store.version(); version < 1 || version > format_version)
+    attempt.report.repairs.push_back("its header says that it is of format version " + std::to_string(version) +
+                                     ", which this program does not know; it is read as of version " +
+                                     std::to_string(format_version));
   if (auto r = salvage_start(attempt.store, attempt.salvage, attempt.report); !r) {
     Errors errors = r.errors();
     for (Error& error : errors) error.where = path;
@@ -215,7 +220,11 @@ Result<Attempt> salvage_all(const std::string& path) {
 Result<Attempt> salvage_either_way(const std::string& in, const std::string& copy) {
   auto plain = salvage_all(in);
   if (plain && plain->report.losses.empty()) return plain;
-  if (!rescue_rows(in, copy)) return plain;
+  if (const auto rows = rescue_rows(in, copy); !rows) {
+    // A full disk tells nothing about the session: what it would have saved must not be called lost.
+    if (rows.errors().front().where != in) return rows.errors();
+    return plain;
+  }
   auto rescued = salvage_all(copy);
   if (!rescued || (plain && rescued->rows() <= plain->rows())) return plain;
   rescued->report.repairs.push_back(
@@ -235,7 +244,12 @@ Result<RecoverReport> recover_session(const std::string& in, const std::string& 
     ~Remover() { remove_with_companions(path); }
   } const remover{copy};
   auto attempt = salvage_either_way(in, copy);
-  if (!attempt) return attempt.errors();
+  if (!attempt) {
+    Errors errors = attempt.errors();
+    for (Error& error : errors)
+      if (error.where == copy) error.where = out;
+    return errors;
+  }
   auto& [store, salvage, report] = *attempt;
   report.complete = report.losses.empty() && salvage.finish.has_value();
   if (!salvage.finish) report.losses.push_back("the session was cut off: it has no end");

@@ -50,7 +50,39 @@ std::string extent_of(const FilledOrgan& organ) {
 
 }  // namespace
 
-bool is_in(const ZoneSpec& zone, Vec3 point) { return is_in_region(zone, point); }
+bool is_in(const ZoneSpec& zone, Vec3 centre, double radius) {
+  if (zone.sphere) return norm(centre - zone.sphere->centre) <= zone.sphere->radius + radius + kBorder;
+  if (zone.plane)
+    return dot(centre - zone.plane->point, zone.plane->normal) <= (radius + kBorder) * norm(zone.plane->normal);
+  if (!zone.box) return false;
+  const Vec3 low = zone.box->min, high = zone.box->max;
+  const Vec3 nearest{std::clamp(centre.x, low.x, high.x), std::clamp(centre.y, low.y, high.y),
+                     std::clamp(centre.z, low.z, high.z)};
+  return norm(centre - nearest) <= radius + kBorder;
+}
+
+bool is_in(const ZoneSpec& zone, Vec3 from, Vec3 to) {
+  if (is_in(zone, from) || is_in(zone, to)) return true;
+  const Vec3 way = to - from;
+  if (zone.sphere) {
+    const double square = dot(way, way);
+    const double along = square > 0 ? std::clamp(dot(zone.sphere->centre - from, way) / square, 0.0, 1.0) : 0.0;
+    return is_in(zone, from + along * way);
+  }
+  if (!zone.box) return false;
+  // The part of the line between each pair of faces.
+  double first = 0, last = 1;
+  for (double Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+    const double low = zone.box->min.*axis - from.*axis, high = zone.box->max.*axis - from.*axis, step = way.*axis;
+    if (step == 0) {
+      if (low > 0 || high < 0) return false;
+      continue;
+    }
+    first = std::max(first, std::min(low / step, high / step));
+    last = std::min(last, std::max(low / step, high / step));
+  }
+  return first <= last;
+}
 
 double lowest_height(const FilledOrgan& organ, Vec3 gravity) {
   // The lattice covers the surface, so its lowest spheres lie below the organ.

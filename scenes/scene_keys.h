@@ -444,7 +444,9 @@ void describe_fields(V& v, SceneSpec& scene) {
          scene.organs_meet);
   v.list(Key{"loads", "External forces."}, scene.loads, 0);
   v.list(Key{"probes", "Points whose motion is recorded."}, scene.probes, 0);
-  v.list(Key{"forbidden", "Zones in which a tool's tip is counted against whoever leads it."}, scene.forbidden, 0);
+  v.list(
+      Key{"forbidden", "Zones in which any part of a ball, or of a blade's edge, is counted against whoever leads it."},
+      scene.forbidden, 0);
   v.record(Key{"solver", "Settings of the time integration."}, scene.solver);
   v.list(Key{"cameras", "Views; commands use the first unless another is named."}, scene.cameras, 0);
 }

@@ -201,8 +201,10 @@ struct ZoneSpec {
   friend bool operator==(const ZoneSpec&, const ZoneSpec&) = default;
 };
 
-/// Whether a point lies in a zone [m].
-bool is_in(const ZoneSpec& zone, Vec3 point);
+/// Whether a ball, or a point, reaches into a zone [m].
+bool is_in(const ZoneSpec& zone, Vec3 centre, double radius = 0);
+/// Whether any point of a straight line lies in a zone [m].
+bool is_in(const ZoneSpec& zone, Vec3 from, Vec3 to);
 
 /// Scene key `solver.integrator`.
 enum class IntegratorSpec { automatic, leapfrog, backward_euler, sdirk2 };

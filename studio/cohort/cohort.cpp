@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <set>
 
 #include "core/model/errors.h"
 #include "core/parallel/team.h"
+#include "recordings/byte_hash.h"
 #include "recordings/session_reader.h"
 #include "scenes/scene_file.h"
 #include "studio/compare/measure_table.h"
@@ -35,6 +37,13 @@ struct Experts {
                                     const std::vector<compare::Alignment>& alignments) const;
 };
 
+std::uint64_t motion_hash(const SessionTrack& track) {
+  recordings::ByteHash hash;
+  const auto add = [&](const auto& values) { hash.add(values.data(), values.size() * sizeof values[0]); };
+  add(track.tip), add(track.force), add(track.depth);
+  return hash.value();
+}
+
 Result<ReadSession> read_session(const FoundSession& found, const TaskResult& task, const CohortOptions& options) {
   Result<SessionReader> reader = SessionReader::open(found.file);
   if (!reader) return reader.errors();
@@ -52,6 +61,7 @@ Result<ReadSession> read_session(const FoundSession& found, const TaskResult& ta
   if (!track->replays) attempt.remarks.push_back("does not replay as it was recorded");
   if (options.verify && !track->is_verified && track->replays) attempt.remarks.push_back("could not be verified");
   if (!track->is_timed) attempt.remarks.push_back("lacks " + output::fixed(track->slip, 3) + " s of real time");
+  attempt.motion_hash = motion_hash(*track);
   read.way = compare::tool_path(*track);
   read.track = std::move(*track);
   return read;
@@ -187,6 +197,16 @@ void drop(std::vector<Attempt>& attempts, const std::vector<Errors>& failures) {
   attempts = std::move(kept);
 }
 
+/// Remarks attempts that hold the same motion and forces as another session: a copy under another name counts twice.
+void remark_copies(TaskResult& task) {
+  std::map<std::uint64_t, std::string> seen;
+  for (auto* all : {&task.experts, &task.attempts})
+    for (Attempt& attempt : *all) {
+      const auto [first, is_new] = seen.emplace(attempt.motion_hash, attempt.session.file);
+      if (!is_new) attempt.remarks.push_back("has the same motion and forces as " + first->second);
+    }
+}
+
 std::vector<FoundSession> of_task(const std::vector<FoundSession>& all, std::size_t task) {
   std::vector<FoundSession> found;
   std::ranges::copy_if(all, std::back_inserter(found), [&](const FoundSession& s) { return s.task == task; });
@@ -233,6 +253,43 @@ std::optional<bool> judge(const std::vector<SessionValue>& values, const scenes:
       missed.push_back(mark.measure);
   }
   return any ? std::optional(missed.empty()) : std::nullopt;
+}
+
+Errors find_hard_marks(const TaskResult& task) {
+  Errors warnings;
+  for (const scenes::MarkSpec& mark : task.task.marks) {
+    std::size_t missed = 0;
+    std::vector<double> values;
+    for (const Attempt& expert : task.experts) {
+      missed += std::ranges::count(expert.missed, mark.measure) > 0;
+      if (const auto& value = expert.value_of(mark.measure).value) values.push_back(*value);
+    }
+    if (missed == 0 || 2 * missed < task.experts.size()) continue;
+    const auto [least, most] = std::ranges::minmax_element(values);
+    warnings.push_back(
+        {"task '" + task.task.name + "'",
+         std::to_string(missed) + " of its " + std::to_string(task.experts.size()) + " experts miss the pass mark of " +
+             mark.measure +
+             (values.empty() ? ": it has no value in their sessions"
+                             : ", with " + output::short_number(*least, 3) + " to " + output::short_number(*most, 3)),
+         "whoever is as good as they are fails"});
+  }
+  return warnings;
+}
+
+CourseFindings find_hard_marks(const scenes::CourseSpec& course) {
+  CourseFindings findings;
+  const Result<Gathered> gathered = gather_experts(course);
+  append(findings.errors, gathered);
+  if (!gathered) return findings;
+  for (std::size_t i = 0; i < course.tasks.size(); ++i) {
+    TaskResult task;
+    task.task = course.tasks[i];
+    const Result<Experts> experts = measure_experts(task, of_task(gathered->experts, i), {}, [] {});
+    append(findings.errors, experts);
+    if (experts) append(findings.warnings, find_hard_marks(task));
+  }
+  return findings;
 }
 
 std::optional<double> share_no_better(double value, const std::vector<double>& others, compare::Direction direction,
@@ -285,6 +342,7 @@ Result<Cohort> measure_cohort(const scenes::CourseSpec& course, const std::strin
     });
     for (const Errors& failure : failures) append(cohort.damaged, failure);
     drop(task.attempts, failures);
+    remark_copies(task);
     for (const auto* all : {&task.experts, &task.attempts})
       for (const Attempt& attempt : *all)
         replays = replays && std::ranges::none_of(attempt.remarks, [](const std::string& remark) {

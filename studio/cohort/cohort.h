@@ -29,6 +29,7 @@ struct Attempt {
   std::optional<bool> passed;        ///< every pass mark; unset: the task has none
   std::vector<std::string> missed;   ///< keys of the measures whose pass marks were missed or have no value
   std::vector<std::string> remarks;  ///< caveats, one sentence each
+  std::uint64_t motion_hash = 0;     ///< of the tool's ways, forces and depths; a copy under another name has the same
 
   const compare::SessionValue& value_of(const std::string& key) const;
 };
@@ -70,6 +71,12 @@ struct CohortOptions {
 /// gather(); damaged sessions of experts, all of them; those of trainees if no other is of a task.
 Result<Cohort> measure_cohort(const scenes::CourseSpec& course, const std::string& trainees,
                               const CohortOptions& options);
+
+/// Pass marks that at least half of a task's experts do not meet: whoever is as good as they are fails. A warning each.
+Errors find_hard_marks(const TaskResult& task);
+
+/// The same of a whole course, from its experts' sessions alone. Errors: those of gather() that concern them.
+CourseFindings find_hard_marks(const scenes::CourseSpec& course);
 
 /// Whether values meet the pass marks of a task; unset if it has none. `missed` gets the keys of those that do not.
 std::optional<bool> judge(const std::vector<compare::SessionValue>& values, const scenes::TaskSpec& task,

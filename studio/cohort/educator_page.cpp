@@ -64,6 +64,8 @@ reports::Table people_table(const Cohort& cohort, const TaskResult& task) {
 }
 
 std::string interval_text(const std::vector<double>& values, const scenes::IntervalSpec& how) {
+  const std::optional<Spread> spread = spread_of(values);
+  if (spread && !(spread->deviation > 0)) return "";  // drawn again, equal values tell nothing
   const std::optional<Interval> interval = interval_of_mean(values, how);
   return interval ? short_number(interval->low, 3) + " to " + short_number(interval->high, 3) : "";
 }

@@ -19,24 +19,33 @@ namespace {
 namespace fs = std::filesystem;
 using recordings::SessionReader;
 
-/// All session files below a folder, in the order of their names.
-std::vector<fs::path> files_below(const std::string& folder) {
+void add_files_below(const fs::path& folder, std::vector<fs::path>& files, Errors& unread) {
+  std::error_code failure, ignored;
+  for (auto at = fs::directory_iterator(folder, failure), end = fs::directory_iterator(); !failure && at != end;
+       at.increment(failure)) {
+    const bool is_link = at->is_symlink(ignored);
+    if (at->is_directory(ignored) && !is_link) add_files_below(at->path(), files, unread);
+    // A link that leads nowhere is told when it is opened.
+    const bool is_file = at->is_regular_file(ignored) || (is_link && !at->exists(ignored));
+    if (is_file && at->path().extension() == ".ctpm") files.push_back(at->path());
+  }
+  if (failure)
+    unread.push_back(
+        {folder.string(),
+         failure == std::errc::no_such_file_or_directory ? "does not exist" : "cannot be read: " + failure.message(),
+         ""});
+}
+
+/// All session files below a folder, in the order of their names. `unread` gets the folders that cannot be read.
+std::vector<fs::path> files_below(const std::string& folder, Errors& unread) {
   std::vector<fs::path> files;
-  std::error_code failure;
-  for (auto at = fs::recursive_directory_iterator(folder, failure), end = fs::recursive_directory_iterator();
-       !failure && at != end; at.increment(failure))
-    if (at->is_regular_file(failure) && at->path().extension() == ".ctpm") files.push_back(at->path());
+  add_files_below(folder, files, unread);
   std::ranges::sort(files);
   return files;
 }
 
-/// Why a folder gave no session.
-Error without_sessions(const std::string& folder, const char* otherwise) {
-  std::error_code failure;
-  fs::directory_iterator(folder, failure);
-  if (failure == std::errc::no_such_file_or_directory) return {folder, "does not exist", ""};
-  return {folder, failure ? "cannot be read: " + failure.message() : otherwise, ""};
-}
+/// Whether the path of a session names a task.
+bool names_task(const fs::path& path, const std::string& task) { return path.string().find(task) != std::string::npos; }
 
 std::string person_of(const SessionReader& session, const fs::path& file, const std::string& folder) {
   const auto& metadata = session.start().metadata;
@@ -49,12 +58,21 @@ std::string person_of(const SessionReader& session, const fs::path& file, const 
 struct Scene {
   std::uint64_t with_names = 0, without_names = 0;
   bool is_anonymised = false;
+  std::vector<scenes::ZoneSpec> zones;  ///< that it forbids, without their names
 };
+
+/// Forbidden zones without their names, which anonymised sessions lack.
+std::vector<scenes::ZoneSpec> without_names(std::vector<scenes::ZoneSpec> zones) {
+  for (scenes::ZoneSpec& zone : zones) zone.name.clear();
+  return zones;
+}
 
 Scene scene_of(const SessionReader& session) {
   const Model& model = session.start().model;
+  const Result<scenes::SceneText> text = scenes::read_scene(session.start().scene_text, session.path());
   return {compare::scene_hash(model), compare::scene_hash(model, compare::Names::do_not_count),
-          session::begins_at_elapsed_time(session)};
+          session::begins_at_elapsed_time(session),
+          text ? without_names(text->spec.forbidden) : std::vector<scenes::ZoneSpec>()};
 }
 
 /// As compare::check_same_scene().
@@ -70,7 +88,8 @@ class Gatherer {
   void add_experts(std::size_t task) {
     const std::string& folder = course_.tasks[task].experts;
     std::size_t count = 0;
-    for (const fs::path& file : files_below(folder)) {
+    Errors unread;
+    for (const fs::path& file : files_below(folder, unread)) {
       const Result<SessionReader> session = open(file, errors_);
       if (!session) continue;
       ++count;
@@ -81,16 +100,23 @@ class Gatherer {
       else if (!are_same(scene, *scenes_[task]))
         errors_.push_back(
             {file.string(), "is of another scene than " + first_[task], "the experts of a task work in one scene"});
+      else if (scene.zones != scenes_[task]->zones)
+        errors_.push_back(
+            {file.string(), "forbids other zones than " + first_[task], "the experts of a task work in one scene"});
     }
+    append(errors_, unread);
+    if (!unread.empty()) return;
     if (count == 1)
       errors_.push_back({folder, "holds one expert's session, which cannot tell how much experts differ",
                          "at least two are needed for a mean and a spread"});
-    if (count == 0) errors_.push_back(without_sessions(folder, "holds no session that can be read"));
+    if (count == 0) errors_.push_back({folder, "holds no session that can be read", ""});
   }
 
   void add_trainees(const std::string& folder) {
-    const std::vector<fs::path> files = files_below(folder);
-    if (files.empty()) errors_.push_back(without_sessions(folder, "holds no session"));
+    Errors unread;
+    const std::vector<fs::path> files = files_below(folder, unread);
+    if (files.empty()) append(errors_, unread.empty() ? Errors{{folder, "holds no session", ""}} : unread);
+    append(found_.damaged, unread);
     for (const fs::path& file : files) {
       const Result<SessionReader> session = open(file, found_.damaged);
       if (!session) continue;
@@ -98,24 +124,19 @@ class Gatherer {
       std::vector<std::size_t> tasks;
       for (std::size_t i = 0; i < scenes_.size(); ++i)
         if (scenes_[i] && are_same(*scenes_[i], scene)) tasks.push_back(i);
-      const std::size_t candidates = tasks.size();
-      if (candidates > 1)
-        std::erase_if(tasks, [&](std::size_t i) {
-          return file.lexically_relative(folder).string().find(course_.tasks[i].name) == std::string::npos;
-        });
-      if (tasks.size() == 1)
-        add(found_.trainees, *session, file, folder, tasks[0]);
-      else if (candidates == 0)
+      const std::vector<std::size_t> candidates = tasks;
+      if (candidates.size() > 1) choose_by_path(tasks, file.lexically_relative(folder));
+      if (candidates.empty())
         found_.left_out.push_back(file.string() + " is of no task: no expert works in its scene");
-      else
-        errors_.push_back({file.string(), "may be of several tasks, because they are in one scene",
+      else if (tasks.size() != 1)
+        errors_.push_back({file.string(), "may be of the tasks " + names_of(candidates) + ", which are in one scene",
                            "name its folder or the file after the task"});
+      else if (scene.zones != scenes_[tasks[0]]->zones)
+        found_.left_out.push_back(file.string() +
+                                  " was recorded with other forbidden zones than the experts' sessions");
+      else
+        add(found_.trainees, *session, file, folder, tasks[0]);
     }
-  }
-
-  Result<Done> experts_checked() const {
-    if (!errors_.empty()) return errors_;
-    return Done{};
   }
 
   Result<Gathered> finish() {
@@ -130,6 +151,24 @@ class Gatherer {
   }
 
  private:
+  /// Keeps the tasks that a path names; of names that are part of another one, the longest.
+  void choose_by_path(std::vector<std::size_t>& tasks, const fs::path& path) const {
+    const auto name = [&](std::size_t i) -> const std::string& { return course_.tasks[i].name; };
+    std::erase_if(tasks, [&](std::size_t i) { return !names_task(path, name(i)); });
+    const std::vector<std::size_t> named = tasks;
+    std::erase_if(tasks, [&](std::size_t i) {
+      return std::ranges::any_of(named, [&](std::size_t k) {
+        return name(k).size() > name(i).size() && name(k).find(name(i)) != std::string::npos;
+      });
+    });
+  }
+
+  std::string names_of(const std::vector<std::size_t>& tasks) const {
+    std::string names;
+    for (const std::size_t i : tasks) names += (names.empty() ? "'" : ", '") + course_.tasks[i].name + "'";
+    return names;
+  }
+
   static Result<SessionReader> open(const fs::path& file, Errors& errors) {
     Result<SessionReader> session = SessionReader::open(file.string());
     append(errors, session);
@@ -139,7 +178,11 @@ class Gatherer {
   void add(std::vector<FoundSession>& sessions, const SessionReader& session, const fs::path& file,
            const std::string& folder, std::size_t task) {
     const auto [other, is_new] = seen_.emplace(session.session_id(), file.string());
-    if (!is_new)
+    if (!is_new && fs::equivalent(file, other->second))
+      errors_.push_back({file.string(),
+                         "is in the experts' folder of two tasks, also of '" + course_.tasks[task].name + "'",
+                         "each task has experts of its own"});
+    else if (!is_new)
       errors_.push_back({file.string(), "is the same session as " + other->second, "every session counts once"});
     sessions.push_back({file.string(), session.session_id(), person_of(session, file, folder), session.created_unix_s(),
                         session::begins_at_elapsed_time(session), task});
@@ -162,24 +205,30 @@ Result<Gathered> gather(const scenes::CourseSpec& course, const std::string& tra
   return gatherer.finish();
 }
 
-Result<Done> check_experts(const scenes::CourseSpec& course) {
+Result<Gathered> gather_experts(const scenes::CourseSpec& course) {
   Gatherer gatherer(course);
   for (std::size_t i = 0; i < course.tasks.size(); ++i) gatherer.add_experts(i);
-  return gatherer.experts_checked();
+  return gatherer.finish();
 }
 
-SceneFindings find_other_scenes(const scenes::CourseSpec& course, const scenes::LoadOptions& options) {
-  SceneFindings found;
+CourseFindings find_other_scenes(const scenes::CourseSpec& course, const scenes::LoadOptions& options) {
+  CourseFindings found;
   for (const scenes::TaskSpec& task : course.tasks) {
     const Result<loading::LoadedScene> scene = loading::load_whole_scene(task.scene, options);
     append(found.errors, scene);
-    const std::vector<fs::path> files = files_below(task.experts);
+    Errors unread;
+    const std::vector<fs::path> files = files_below(task.experts, unread);
     if (!scene || files.empty()) continue;
     const Result<SessionReader> expert = SessionReader::open(files.front().string());
     if (!expert) continue;
     const compare::Names names =
         session::begins_at_elapsed_time(*expert) ? compare::Names::do_not_count : compare::Names::count;
     const std::string reason = compare::scene_difference(expert->start().model, scene->built.model, names);
+    if (reason.empty() && scene_of(*expert).zones != without_names(scene->scene.spec.forbidden))
+      found.warnings.push_back({task.scene,
+                                "forbids other zones than when the experts of the task '" + task.name +
+                                    "' worked in it: those of the sessions count, as in " + files.front().string(),
+                                "sessions that are recorded in it now are left out"});
     if (!reason.empty())
       found.warnings.push_back({task.scene,
                                 "is not the scene in which the experts of the task '" + task.name +

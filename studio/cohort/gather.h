@@ -24,25 +24,26 @@ struct FoundSession {
 struct Gathered {
   std::vector<FoundSession> experts, trainees;  ///< by task, person and time
   std::vector<std::string> left_out;            ///< sessions of trainees that belong to no task, and why
-  Errors damaged;                               ///< sessions of trainees that cannot be read
+  Errors damaged;                               ///< sessions and folders of trainees that cannot be read
 };
 
 /// Finds the sessions below the folders of experts and of trainees. Errors: experts' sessions that cannot be read;
-/// experts of one task in two scenes; a task with fewer than two experts; a session that occurs twice; two tasks in one
-/// scene between which the path of a session does not choose; a folder without any session.
+/// experts of one task in two scenes, or with other forbidden zones; a task with fewer than two experts; a session that
+/// occurs twice; two tasks in one scene between which the path of a session does not choose; a folder without any
+/// session.
 Result<Gathered> gather(const scenes::CourseSpec& course, const std::string& trainees);
 
-/// Checks the experts' sessions of a course. Errors: those of gather() that concern them.
-Result<Done> check_experts(const scenes::CourseSpec& course);
+/// The experts' sessions alone. Errors: those of gather() that concern them.
+Result<Gathered> gather_experts(const scenes::CourseSpec& course);
 
-/// What is wrong with the scenes of a course.
-struct SceneFindings {
-  Errors errors;    ///< of scenes that cannot be loaded
-  Errors warnings;  ///< tasks whose experts worked in another scene
+/// What is wrong with a course that can be read, and what is odd about it.
+struct CourseFindings {
+  Errors errors, warnings;
 };
 
-/// Compares the scene of each task, as its file is now, with that of the experts' sessions.
-SceneFindings find_other_scenes(const scenes::CourseSpec& course, const scenes::LoadOptions& options = {});
+/// Compares the scene of each task, as its file is now, with that of the experts' sessions. Errors: scenes that cannot
+/// be loaded; warnings: tasks whose experts worked in another scene, or with other forbidden zones.
+CourseFindings find_other_scenes(const scenes::CourseSpec& course, const scenes::LoadOptions& options = {});
 
 /// A course of one task that nobody has written: all measures of the experts in a folder, and no pass marks.
 scenes::CourseSpec course_of_folder(const std::string& experts);

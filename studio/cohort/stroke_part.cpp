@@ -84,14 +84,22 @@ reports::Plot stroke_plot(const TaskResult& task, bool is_of_force, const std::v
   return plot;
 }
 
+/// How far the latest attempt is from the experts' way where it or they work; 0 on the way through the air.
+std::vector<double> distance_at_work(const TaskResult& task, const Attempt& latest) {
+  std::vector<double> distance = distance_from(task.middle, latest.curve);
+  for (std::size_t i = 0; i < distance.size(); ++i)
+    if (!(std::max(task.force.mean[i], latest.curve.force[i]) > kForceRounding)) distance[i] = 0;
+  return distance;
+}
+
 }  // namespace
 
 std::vector<StrokeMoment> moments_of(const TaskResult& task, const Attempt& latest) {
   std::vector<StrokeMoment> moments;
   for (const bool is_of_force : {true, false}) {
     const Told what = told(task, is_of_force);
-    const StrokeExcess excess = excess_of(is_of_force ? latest.curve.force : distance_from(task.middle, latest.curve),
-                                          what.band, what.rounding);
+    const StrokeExcess excess =
+        excess_of(is_of_force ? latest.curve.force : distance_at_work(task, latest), what.band, what.rounding);
     if (!excess.any) continue;
     moments.push_back({is_of_force, excess, "", latest.curve.time[excess.worst],
                        task.experts[task.middle_expert].curve.time[excess.worst]});

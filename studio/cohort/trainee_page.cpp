@@ -109,9 +109,9 @@ bool is_same_structure(const Attempt& attempt, const Attempt& expert, std::size_
 /// What the latest attempt did to each organ and forbidden zone, beside the experts.
 reports::Table structures_table(const TaskResult& task, const Attempt& latest) {
   reports::Table table;
-  table.columns = {{"structure", "structure"},    {"peak", "peak force [N]", 4, true}, {"peak_mean", "experts' mean"},
-                   {"impulse", "impulse [N s]"},  {"impulse_mean", "experts' mean"},   {"work", "work [mJ]"},
-                   {"work_mean", "experts' mean"}};
+  table.columns = {{"structure", "structure"},          {"time", "time [s]"},           {"time_mean", "experts' mean"},
+                   {"peak", "peak force [N]", 4, true}, {"peak_mean", "experts' mean"}, {"impulse", "impulse [N s]"},
+                   {"impulse_mean", "experts' mean"},   {"work", "work [mJ]"},          {"work_mean", "experts' mean"}};
   constexpr double kMillijoules = 1e3;
   for (std::size_t i = 0; i < latest.structures.size(); ++i) {
     const compare::StructureLoad& load = latest.structures[i];
@@ -122,13 +122,15 @@ reports::Table structures_table(const TaskResult& task, const Attempt& latest) {
       const std::optional<Spread> spread = spread_of(values);
       return spread ? reports::Cell(spread->mean) : reports::Cell(std::string("insufficient data"));
     };
-    table.rows.push_back({(load.is_zone ? "forbidden: " : "") + load.name, load.peak,
-                          mean(&compare::StructureLoad::peak, 1), load.impulse,
-                          mean(&compare::StructureLoad::impulse, 1), kMillijoules * load.work,
+    table.rows.push_back({(load.is_zone ? "forbidden: " : "") + load.name, load.seconds,
+                          mean(&compare::StructureLoad::seconds, 1), load.peak, mean(&compare::StructureLoad::peak, 1),
+                          load.impulse, mean(&compare::StructureLoad::impulse, 1), kMillijoules * load.work,
                           mean(&compare::StructureLoad::work, kMillijoules)});
   }
   table.title = "Each structure";
-  table.caption = "The whole force counts for the organ that the tool touches most.";
+  table.caption =
+      "The time is that with a force on the organ, or with the tool in the zone. The whole force counts for the organ "
+      "that the tool touches most.";
   return table;
 }
 
@@ -185,10 +187,21 @@ reports::Plot learning_plot(const Learned& learned, const scenes::LearningSpec& 
   return plot;
 }
 
+/// In which forbidden zones an attempt was, and for how long; empty: in none.
+std::string zones_text(const Attempt& attempt) {
+  std::string text;
+  for (const compare::StructureLoad& load : attempt.structures)
+    if (load.is_zone && load.seconds > 0)
+      text += (text.empty() ? " It was in forbidden zones: " : ", ") + load.name + " for " +
+              output::fixed(load.seconds, 2) + " s";
+  return text.empty() ? text : text + ".";
+}
+
 /// What stands above: of the latest attempt of a task.
 std::string verdict_text(const TaskResult& task, const Attempt& latest, const Learned& learned) {
   const std::string which = task.task.name + ", attempt " + std::to_string(latest.session.attempt);
-  if (!latest.passed) return which + ": measured beside " + std::to_string(task.experts.size()) + " experts.";
+  if (!latest.passed)
+    return which + ": measured beside " + std::to_string(task.experts.size()) + " experts." + zones_text(latest);
   std::string text = which + (*latest.passed ? ": passed." : ": not passed.");
   for (std::size_t i = 0; i < std::min<std::size_t>(latest.missed.size(), 3); ++i) {
     const compare::SessionValue& value = latest.value_of(latest.missed[i]);
@@ -199,6 +212,7 @@ std::string verdict_text(const TaskResult& task, const Attempt& latest, const Le
   }
   if (latest.missed.size() > 3) text += " and " + std::to_string(latest.missed.size() - 3) + " more";
   if (!latest.missed.empty()) text += ".";
+  text += zones_text(latest);
   if (learned.state == LearningState::open) return text + " Whether it is learned is not yet known.";
   const std::string since = std::to_string(learned.reached);
   return text + (learned.state == LearningState::learned ? " Learned, as of attempt " + since + "."

@@ -4,6 +4,7 @@
 
 #include "core/model/errors.h"
 #include "scenes/course.h"
+#include "studio/cohort/cohort.h"
 #include "studio/cohort/gather.h"
 #include "studio/commands/command.h"
 #include "studio/commands/console.h"
@@ -41,16 +42,19 @@ std::string counted_warnings(std::size_t count) {
 bool is_good_course(const std::string& path, const scenes::LoadOptions& load) {
   const Result<scenes::CourseSpec> course = scenes::load_course(path, compare::measure_keys());
   if (!course) return print_errors(course.errors()), false;
-  const cohort::SceneFindings scenes = cohort::find_other_scenes(*course, load);
+  const cohort::CourseFindings scenes = cohort::find_other_scenes(*course, load);
   Errors errors;
-  append(errors, cohort::check_experts(*course));
+  const cohort::CourseFindings marks = cohort::find_hard_marks(*course);
+  append(errors, marks.errors);
   append(errors, scenes.errors);
   if (!errors.empty()) return print_errors(errors), false;
-  print_warnings(scenes.warnings);
+  Errors warnings = scenes.warnings;
+  append(warnings, marks.warnings);
+  print_warnings(warnings);
   const std::size_t tasks = course->tasks.size();
   print("%s: good, %zu %s; %s%s\n", path.c_str(), tasks, tasks == 1 ? "task" : "tasks",
         course->evidence.empty() ? "not validated" : ("validated by " + output::printable(course->evidence)).c_str(),
-        counted_warnings(scenes.warnings.size()).c_str());
+        counted_warnings(warnings.size()).c_str());
   return true;
 }
 

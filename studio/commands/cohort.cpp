@@ -81,8 +81,14 @@ int run_cohort(const CohortArguments& arguments) {
   if (!measured) return print_errors(measured.errors());
   // A scene that was changed since the experts worked in it is why sessions are of no task; else `check` says so.
   if (arguments.experts.empty() && !measured->left_out.empty()) {
-    const cohort::SceneFindings scenes = cohort::find_other_scenes(*course);
+    const cohort::CourseFindings scenes = cohort::find_other_scenes(*course);
     print_warnings(scenes.errors), print_warnings(scenes.warnings);
+  }
+  for (const cohort::TaskResult& task : measured->tasks) {
+    print_warnings(cohort::find_hard_marks(task));
+    for (const auto* all : {&task.experts, &task.attempts})
+      for (const cohort::Attempt& attempt : *all)
+        for (const std::string& remark : attempt.remarks) print_remark("note: " + attempt.session.file + " " + remark);
   }
   if (const Result<Done> ready = reports::prepare_folder(arguments.folder, cohort::kFirstPage); !ready)
     return print_errors(ready.errors());

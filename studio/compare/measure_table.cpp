@@ -135,7 +135,7 @@ const Measure kZoneTime{"time_in_forbidden_zones_s",
                         "time in forbidden zones",
                         "s",
                         lower,
-                        "with the tip in a zone that the scene forbids",
+                        "with any part of a ball, or of a blade's edge, in a zone that the scene forbids",
                         kOwn,
                         kTimeRounding};
 const Measure kZoneImpulse{"impulse_in_forbidden_zones_n_s",

@@ -27,7 +27,7 @@ std::vector<SessionValue> measure_session(const SessionTrack& track, std::option
 struct StructureLoad {
   std::string name;
   bool is_zone = false;
-  double seconds = 0;            ///< with a force on the organ, or with the tip in the zone
+  double seconds = 0;            ///< with a force on the organ, or in the zone
   double peak = 0;               ///< force [N]
   double impulse = 0, work = 0;  ///< [N s], of the tool on the tissue [J]
 };

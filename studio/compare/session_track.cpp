@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "core/cutting/cutting.h"
 #include "core/model/fields.h"
 #include "recordings/byte_hash.h"
 #include "recordings/replay.h"
@@ -273,32 +274,42 @@ std::string difference_in_words(const Model& a, const Model& b, Names count_name
 /// Of a tool that is moved `by` against the force of the tissue on it [J].
 double work_of(Vec3 force, Vec3 by) { return -dot(force, by); }
 
-/// In which of the scene's forbidden zones the tip is; none of a scene that another version wrote.
-void find_zones(SessionTrack& track, const recordings::SessionStart& start) {
-  const Result<scenes::SceneText> scene = scenes::read_scene(start.scene_text, track.path);
-  if (!scene || scene->spec.forbidden.empty()) return;
-  const std::vector<scenes::ZoneSpec>& zones = scene->spec.forbidden;
-  for (const scenes::ZoneSpec& zone : zones) track.zones.push_back(zone.name);
-  for (std::size_t i = 0; i < track.tick_count(); ++i) {
-    const auto in = std::ranges::find_if(zones, [&](const auto& zone) { return scenes::is_in(zone, track.tip[i]); });
-    track.zone.push_back(track.tool[i] < 0 || in == zones.end() ? -1 : std::int32_t(in - zones.begin()));
-  }
+/// The scene's forbidden zones; none of a scene that another version wrote.
+std::vector<scenes::ZoneSpec> zones_of(const recordings::SessionStart& start, const std::string& path) {
+  const Result<scenes::SceneText> scene = scenes::read_scene(start.scene_text, path);
+  return scene ? scene->spec.forbidden : std::vector<scenes::ZoneSpec>();
+}
+
+/// In which of some zones a tool is with any part of its ball, or of its blade's edge and point; -1: in none. Of
+/// another tool its place counts.
+std::int32_t zone_of(const std::vector<scenes::ZoneSpec>& zones, const Model& model, const Hand& hand) {
+  if (hand.tool < 0) return -1;
+  const Tool& tool = model.tools[std::size_t(hand.tool)];
+  const auto in = std::ranges::find_if(zones, [&](const scenes::ZoneSpec& zone) {
+    if (tool.kind != ToolKind::scalpel)
+      return scenes::is_in(zone, hand.position, tool.kind == ToolKind::ball ? tool.radius : 0);
+    const cutting::BladeEdge edge = cutting::blade_edge(tool, hand);
+    return scenes::is_in(zone, edge.tip, edge.heel) || scenes::is_in(zone, edge.tip, edge.back);
+  });
+  return in == zones.end() ? -1 : std::int32_t(in - zones.begin());
 }
 
 /// What one hand did.
 struct HandTrack {
-  std::vector<std::int32_t> tool;
+  std::vector<std::int32_t> tool, zone;
   std::vector<Vec3> tip;
   std::vector<double> force, depth, work;
   std::int64_t cuts = 0, holds = 0;  ///< ticks in which it severs, and in which it holds a tool
 
-  void add(const Model& model, const recordings::TickRecord& record, std::size_t number) {
+  void add(const Model& model, const std::vector<scenes::ZoneSpec>& zones, const recordings::TickRecord& record,
+           std::size_t number) {
     const Hand& hand = record.inputs.hand(number);
     const stepping::HandReport report = record.of_hand(number);
     const bool goes_on = !tool.empty() && tool.back() == hand.tool;
     work.push_back(goes_on ? work_of(report.tool_force, hand.position - tip.back()) : 0.0);
     tool.push_back(hand.tool), tip.push_back(hand.position);
     force.push_back(norm(report.tool_force)), depth.push_back(report.depth);
+    if (!zones.empty()) zone.push_back(zone_of(zones, model, hand));
     holds += holds_tool(model, hand.tool);
     cuts += record.severed > 0 && model.is_scalpel(hand.tool);
   }
@@ -323,25 +334,26 @@ Result<SessionTrack> read_recorded(recordings::SessionReader& session) {
   if (const auto name = start.metadata.find("scene_name"); name != start.metadata.end())
     track.scene_name = name->second;
   std::array<HandTrack, kMostHands> hands;
+  const std::vector<scenes::ZoneSpec> zones = zones_of(start, track.path);
+  for (const scenes::ZoneSpec& zone : zones) track.zones.push_back(zone.name);
   const std::int64_t count = session.tick_count();
   for (std::int64_t from = 0; from < count; from += kReadTicks) {
     const auto records = session.ticks(from, std::min(from + kReadTicks, count));
     if (!records) return records.errors();
     for (const recordings::TickRecord& record : *records) {
-      for (std::size_t i = 0; i < std::size_t(start.model.hands); ++i) hands[i].add(start.model, record, i);
+      for (std::size_t i = 0; i < std::size_t(start.model.hands); ++i) hands[i].add(start.model, zones, record, i);
       track.severed.push_back(record.severed);
       track.slip = std::max(track.slip, record.slip);
     }
   }
   track.hand = hands[1].works_more_than(hands[0]) ? 1 : 0;
   HandTrack &works = hands[track.hand], &other = hands[1 - track.hand];
-  track.tool = std::move(works.tool), track.tip = std::move(works.tip);
+  track.tool = std::move(works.tool), track.tip = std::move(works.tip), track.zone = std::move(works.zone);
   track.force = std::move(works.force), track.depth = std::move(works.depth);
   track.other_force = std::move(other.force), track.work = std::move(works.work);
   // Where there is one organ, it is the one that is touched.
   if (start.model.organs.size() == 1)
     for (const double force : track.force) track.organ.push_back(force > 0 ? 0 : -1);
-  find_zones(track, start);
   constexpr double kSlipShare = 0.01;
   track.is_timed = is_scripted(start) || track.slip <= kSlipShare * track.seconds(track.tick_count());
   track.strokes = strokes_of(track.tool);

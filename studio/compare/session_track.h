@@ -45,7 +45,7 @@ struct SessionTrack {
   std::vector<std::int32_t> organ;  ///< that the tool touches most, in Model::organs; -1: none; empty: not known, of a
                                     ///< session with several organs that was not replayed          (tick_count)
   std::vector<std::string> zones;   ///< forbidden ones of the scene
-  std::vector<std::int32_t> zone;   ///< in which the tip is, of `zones`; -1: none                    (tick_count)
+  std::vector<std::int32_t> zone;   ///< in which the tool is, of `zones`; -1: none; empty: no zones   (tick_count)
   std::vector<std::int32_t> severed;     ///< elements severed in the tick                       (tick_count)
   std::vector<Spell> strokes;            ///< ticks in which one tool is held without a break
   std::vector<Spell> cuts;               ///< ticks from the first to the last severed element of each cut

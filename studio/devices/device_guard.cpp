@@ -118,7 +118,7 @@ bool DeviceGuard::take(const DeviceReport& report) {
 
 void DeviceGuard::look(double now) {
   if (!has_pose_) return;
-  const double silence = now - arrival_;
+  const double silence = now - std::max(arrival_, watched_from_);
   if (silence > settings_.stall_after) fault("nothing usable comes", now);
   if (silence > settings_.give_up_after && verdict_.empty())
     verdict_ = "the device was lost: nothing usable came for " + seconds(silence) + " (" + faults_.front() + ")";

@@ -33,6 +33,9 @@ class DeviceGuard {
   /// Takes the next report. True if it is a good pose.
   bool take(const DeviceReport& report);
 
+  /// A device cannot stall before the time `now`: what came until then waited for the session to begin.
+  void watch_from(double now) { watched_from_ = now; }
+
   /// Checks for stalls and recovery at the time `now`, by device_clock() [s].
   void look(double now);
 
@@ -91,7 +94,7 @@ class DeviceGuard {
   GuardSettings settings_;
   bool has_pose_ = false;
   Pose pose_;
-  double arrival_ = 0, interval_ = 0, device_time_ = 0;
+  double arrival_ = 0, interval_ = 0, device_time_ = 0, watched_from_ = -INFINITY;
   std::uint32_t buttons_ = 0;
   bool leapt_ = false;
   Track track_;

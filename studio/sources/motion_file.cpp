@@ -83,6 +83,7 @@ class MotionReader {
                         ", as many as names in the first row");
     const std::size_t errors_before = error_count_;
     MotionSample sample;
+    sample.line = line_;
     sample.time = number(time, -1e12, 1e12);
     sample.inputs.position = 1e-3 * Vec3{length(x), length(y), length(z)};
     if (place_[qw]) sample.inputs.world_from_tool = orientation();

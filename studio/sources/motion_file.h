@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -13,8 +14,9 @@ namespace ctpm::sources {
 
 /// One row of a motion.
 struct MotionSample {
-  double time = 0;  ///< [s], rising from sample to sample; any origin
-  Inputs inputs;    ///< the orientation has unit length
+  double time = 0;       ///< [s], rising from sample to sample; any origin
+  Inputs inputs;         ///< the orientation has unit length
+  std::size_t line = 0;  ///< of its file
 };
 
 /// A measured motion of the hand, at any sampling rate.

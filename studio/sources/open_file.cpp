@@ -4,6 +4,7 @@
 
 #include "studio/output/files.h"
 #include "studio/sources/motion_source.h"
+#include "studio/sources/odd_motion.h"
 #include "studio/sources/script_source.h"
 
 namespace ctpm::sources {
@@ -42,6 +43,8 @@ Result<OpenedSource> read_motion_source(const std::string& text, const std::stri
   OpenedSource opened;
   if (!unused.empty())
     opened.remarks.push_back(file + ": columns that say nothing about the hand are left out: " + unused);
+  for (const Error& odd : find_odd_motion(*motion, file))
+    opened.remarks.push_back(odd.where + ": warning: " + odd.message + " (" + odd.hint + ")");
   opened.metadata = {{"source", "motion"}, {"motion_file", file}};
   opened.source = std::make_unique<MotionSource>(std::move(*motion), model.tick);
   return opened;

@@ -3,9 +3,11 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <filesystem>
 #include <functional>
 #include <thread>
 
+#include "recordings/recover.h"
 #include "recordings/replay.h"
 #include "tests/recordings/kills.h"
 #include "tests/recordings/sessions.h"
@@ -115,6 +117,32 @@ TEST(FullDisk, AtCreationLeavesNothingBehind) {
   });
   EXPECT_EQ(code, 0);
   EXPECT_TRUE(folder.names().empty());
+}
+
+/// A session that lost its end is put together anew in a second file: where that does not fit, nothing is known of what
+/// it would save.
+TEST(FullDisk, WhatDoesNotFitIsNotCalledLostByARecovery) {
+  const Folder folder;
+  const std::string path = folder / "a.ctpm", out = folder / "b.ctpm";
+  {
+    const recordings::SessionStart start = small_start(3, 2, 2);
+    auto writer = recordings::SessionWriter::create(path, start, {.keyframe_ticks = 100});
+    ASSERT_TRUE(writer);
+    live(start, 6000, [&](const State& after, const recordings::TickRecord& record) { writer->append(after, record); });
+    ASSERT_TRUE(writer->finish());
+  }
+  const auto size = std::filesystem::file_size(path);
+  std::filesystem::resize_file(path, size / 2);
+  const auto saved = recordings::recover_session(path, out);
+  ASSERT_TRUE(saved) << text_of(saved.errors());
+  ASSERT_GT(saved->ticks_saved, 100);
+  std::filesystem::remove(out);
+  const int code = on_a_full_disk(size / 8, [&] {
+    const auto refused = recordings::recover_session(path, out);
+    return !refused && refused.errors()[0].where == out ? 0 : 1;
+  });
+  EXPECT_EQ(code, 0);
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.ctpm"});
 }
 
 TEST(FullDisk, AQueueThatOverflowsEndsTheRecordingAndSaysSo) {

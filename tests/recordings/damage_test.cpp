@@ -171,6 +171,13 @@ TEST(Damage, ANewerVersionIsRefusedWithBothNumbers) {
   const auto reader = recordings::SessionReader::open(folder / "a.ctpm");
   ASSERT_FALSE(reader);
   EXPECT_EQ(reader.errors()[0].message, "is of format version 9, this program reads up to 1");
+  // It may be damaged: what can be read is saved, and how it was read is said.
+  const auto saved = recordings::recover_session(folder / "a.ctpm", folder / "b.ctpm");
+  ASSERT_TRUE(saved);
+  ASSERT_EQ(saved->repairs.size(), 1u);
+  EXPECT_EQ(saved->repairs[0],
+            "its header says that it is of format version 9, which this program does not know; it is read as of "
+            "version 1");
 }
 
 TEST(Damage, APowerCutInTheLogLosesOnlyTheEnd) {

@@ -232,6 +232,23 @@ TEST(ReadScene, ForbiddenZonesAreReadAndChangeNoModel) {
   EXPECT_FALSE(scenes::is_in(zones[1], {1, 1, 0.1}));
   EXPECT_TRUE(scenes::is_in(zones[2], {0.0015, 0.0015, 0.002}));
   EXPECT_FALSE(scenes::is_in(zones[2], {0.0015, 0.0015, 0.0021}));
+  // A ball, by its surface.
+  EXPECT_TRUE(scenes::is_in(zones[0], {0, 0, 0.0249}, 0.010));
+  EXPECT_FALSE(scenes::is_in(zones[0], {0, 0, 0.0251}, 0.010));
+  EXPECT_TRUE(scenes::is_in(zones[1], {1, 1, 0.009}, 0.010));
+  EXPECT_FALSE(scenes::is_in(zones[1], {1, 1, 0.011}, 0.010));
+  EXPECT_TRUE(scenes::is_in(zones[2], {0.003, 0.003, 0.003}, 0.00174));  // from a corner: sqrt(3) mm
+  EXPECT_FALSE(scenes::is_in(zones[2], {0.003, 0.003, 0.003}, 0.00173));
+  // A line that goes through, with both ends outside, and one that passes beside.
+  EXPECT_TRUE(scenes::is_in(zones[0], {-0.1, 0.0049, 0.01}, {0.1, 0.0049, 0.01}));
+  EXPECT_FALSE(scenes::is_in(zones[0], {-0.1, 0.0051, 0.01}, {0.1, 0.0051, 0.01}));
+  EXPECT_FALSE(scenes::is_in(zones[0], {-0.1, 0.0049, 0.01}, {-0.01, 0.0049, 0.01})) << "it ends before";
+  EXPECT_TRUE(scenes::is_in(zones[1], {0, 0, 0.1}, {0, 0, -0.1}));
+  EXPECT_FALSE(scenes::is_in(zones[1], {0, 0, 0.1}, {5, 0, 0.05}));
+  EXPECT_TRUE(scenes::is_in(zones[2], {0, 0.0015, 0.0015}, {0.003, 0.0015, 0.0015}));
+  EXPECT_TRUE(scenes::is_in(zones[2], {0, 0, 0}, {0.003, 0.003, 0.003}));
+  EXPECT_FALSE(scenes::is_in(zones[2], {0, 0.0021, 0.0015}, {0.003, 0.0021, 0.0015}));
+  EXPECT_FALSE(scenes::is_in(zones[2], {0, 0.0018, 0.0015}, {0.0018, 0.0036, 0.0015})) << "past an edge";
   const auto again = scenes::read_scene(scenes::write_scene(scene->spec), "again.json");
   ASSERT_TRUE(again);
   EXPECT_EQ(again->spec, scene->spec);

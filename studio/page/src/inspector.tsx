@@ -12,7 +12,7 @@ const kTurning = "In the picture a drag turns the view, and the wheel zooms.";
 
 const kWhatItDoes: Partial<Record<Item["kind"], string>> = {
   obstacle: "Tissue touches it and does not enter it; tools pass through it.",
-  zone: "Where no tool should be: comparisons count a tip that is in it. Nothing that is simulated depends on it.",
+  zone: "Where no tool should be: comparisons count a ball or a blade's edge that reaches into it. Nothing that is simulated depends on it.",
 };
 
 /** What the selected thing is, in numbers. */

@@ -301,6 +301,19 @@ TEST_F(DeviceSession, OneWildFirstPoseOrTimeStampDoesNotKeepTheDeviceOut) {
   EXPECT_LT(accepted_after, 1000);
 }
 
+TEST_F(DeviceSession, ADeviceCannotStallBeforeTheFirstTick) {
+  start({});
+  device_->waiting.clear();
+  for (int i = 0; i < 100; ++i) now_ += kTick, tell(kHome);
+  ASSERT_TRUE(source_->wait_for_first_pose([] { return false; }));
+  now_ += 0.3;  // the session's file is opened, on a machine that does nothing else meanwhile
+  be_silent(50);
+  hold(kHome, 100);
+  EXPECT_EQ(story(), "");
+  be_silent(150);
+  EXPECT_EQ(story(), "lost: nothing usable comes; the pose is held\n");
+}
+
 TEST_F(DeviceSession, AToolIsTakenUpWhereItsHandWasSeenFirstAndFollowsFromThere) {
   start({});
   device_->waiting.clear();

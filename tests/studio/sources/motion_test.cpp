@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "studio/sources/odd_motion.h"
 #include "studio/sources/rotation.h"
 
 namespace ctpm {
@@ -36,6 +37,48 @@ sources::Motion read_good(const std::string& text) {
 }
 
 const std::string kHeader = "time_s,tool_x_mm,tool_y_mm,tool_z_mm,tool_qw,tool_qx,tool_qy,tool_qz,buttons,tool\n";
+
+std::string text_of(const Error& odd) { return odd.where + ": " + odd.message + " (" + odd.hint + ")"; }
+
+/// Rows every 10 ms of a ball that goes down at 20 mm/s; `change` may change the time [s] and the height [mm] of row i.
+template <class Change>
+std::string oddities_of(Change change, int rows = 200) {
+  std::string text = "time_s,tool_x_mm,tool_y_mm,tool_z_mm\n";
+  for (int i = 0; i < rows; ++i) {
+    double time = 0.01 * i, height = 80 - 0.2 * i;
+    change(i, time, height);
+    text += std::to_string(time) + ",10,0," + std::to_string(height) + "\n";
+  }
+  std::string all;
+  for (const Error& odd : sources::find_odd_motion(read_good(text), "m.csv")) all += text_of(odd) + "\n";
+  return all;
+}
+
+TEST(OddMotion, IsToldWithItsLine) {
+  EXPECT_EQ(oddities_of([](int, double&, double&) {}), "");
+  EXPECT_EQ(oddities_of([](int i, double&, double& height) { height += i == 100 ? 50 : 0; }),
+            "m.csv:102: the tool goes 49.8 mm in 10 ms, 4.98 m/s (no hand is so fast)\n");
+  EXPECT_EQ(oddities_of([](int i, double& time, double&) { time += i >= 100 ? 0.5 : 0; }),
+            "");  // it moved by 0.2 mm meanwhile
+  EXPECT_EQ(oddities_of([](int i, double& time, double& height) {
+              if (i >= 100) time += 0.5, height -= 10;
+            }),
+            "m.csv:102: nothing was written for 0.51 s, in which the tool went 10.2 mm (it is taken to have gone "
+            "straight)\n");
+  EXPECT_EQ(oddities_of([](int, double& time, double&) { time *= 1000; }),
+            "m.csv: its rows are 10 s apart (time_s is in seconds)\n");
+}
+
+TEST(OddMotion, InMetresIsSuspected) {
+  std::string text = "time_s,tool_x_mm,tool_y_mm,tool_z_mm\n";
+  for (int i = 0; i < 200; ++i)
+    text += std::to_string(0.01 * i) + ",0.01,0," + std::to_string(0.08 - 0.0002 * i) + "\n";
+  const Errors odd = sources::find_odd_motion(read_good(text), "m.csv");
+  ASSERT_EQ(odd.size(), 1u);
+  EXPECT_EQ(text_of(odd[0]),
+            "m.csv: all its places lie within 2 mm of the scene's origin (tool_x_mm, tool_y_mm and "
+            "tool_z_mm are in millimetres)");
+}
 
 TEST(ReadMotion, ColumnsMayStandInAnyOrderAndOthersAreNamedAsUnused) {
   const sources::Motion motion = read_good(
