@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -241,8 +242,25 @@ int run_many(const ExportArguments& arguments) {
   return code;
 }
 
-int run_export(ExportArguments& arguments) {
-  if (exchange::is_shape_file(arguments.output) && arguments.files.size() == 1) return run_shapes(arguments);
+/// Options of pictures that were given for a file that holds shapes.
+Errors check_given(const CLI::App& app, const ExportArguments& arguments) {
+  // Of a pair check_pair() tells more.
+  const std::set<std::string> others{"session",   "output",         "at-s",   "from-s", "to-s",  "fps",
+                                     "overwrite", "allow-diverged", "beside", "ghost",  "align", "help"};
+  Errors errors;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_lnames().empty() ? option->get_name() : option->get_lnames().front();
+    if (option->count() > 0 && !others.contains(name))
+      errors.push_back({"--" + name, "is of pictures, and " + arguments.output + " holds shapes", ""});
+  }
+  return errors;
+}
+
+int run_export(const CLI::App& app, ExportArguments& arguments) {
+  if (exchange::is_shape_file(arguments.output) && arguments.files.size() == 1) {
+    if (const Errors errors = check_given(app, arguments); !errors.empty()) return print_errors(errors);
+    return run_shapes(arguments);
+  }
   Errors errors = check_arguments(arguments);
   const Result<render::PictureSize> size = render::parse_picture_size(arguments.size);
   if (size)
@@ -319,7 +337,7 @@ Command add_export(CLI::App& program) {
   app->add_flag("--overwrite", arguments->options.overwrite, "Replace an existing video");
   app->add_flag("--allow-diverged", options.allow_diverged,
                 "Export although the replay differs, and say so on every frame; it is verified first");
-  return {app, [arguments] { return run_export(*arguments); }};
+  return {app, [app, arguments] { return run_export(*app, *arguments); }};
 }
 
 }  // namespace ctpm::commands

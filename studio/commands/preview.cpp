@@ -102,7 +102,8 @@ Command add_preview(CLI::App& program) {
                 "Beside the surface, the spheres coloured by layer, or with --by material by what they are made of");
   app->add_option("--size", arguments->size, "Width x height in pixels")->capture_default_str();
   app->add_flag("--overwrite", arguments->overwrite, "Replace an existing picture");
-  app->add_flag("--marks", arguments->marks, "Show axes, anchors, probes, loads, and where tools are taken up");
+  app->add_flag("--marks", arguments->marks,
+                "Show axes, anchors, probes, loads, forbidden zones, and where tools are taken up");
   app->add_option("--script", arguments->script, "Show the marks and the ways of this script's tools (.json)");
   app->add_flag("--settled", arguments->settled, "Draw the scene as it lies when a session begins");
   add_look(*app, arguments->look);

@@ -1,6 +1,9 @@
 #include "studio/views/scene_marks.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "scenes/build_model.h"
 #include "studio/views/view_of_scene.h"
@@ -11,7 +14,43 @@ namespace {
 using render::Mark;
 
 constexpr render::Colour kAnchor{0.55, 0.60, 0.66}, kProbe{1.0, 0.85, 0.25}, kTool{0.35, 0.90, 0.95},
-    kLoad{0.95, 0.45, 0.85}, kWay{1.0, 1.0, 1.0};
+    kLoad{0.95, 0.45, 0.85}, kWay{1.0, 1.0, 1.0}, kZone{1.0, 0.42, 0.36};
+
+/// A closed line.
+Mark ring_of(Vec3 centre, Vec3 x, Vec3 y, int corners) {
+  Mark ring{Mark::Shape::line, {}, kZone, ""};
+  for (int i = 0; i <= corners; ++i) {
+    const double angle = 2 * std::numbers::pi * (i + 0.5) / corners;
+    ring.points.push_back(centre + std::cos(angle) * x + std::sin(angle) * y);
+  }
+  return ring;
+}
+
+/// The outline of a forbidden zone: three circles, four sides of a box, or a square of a plane, `size` wide.
+void add_zone(const scenes::ZoneSpec& zone, double size, std::vector<Mark>& marks) {
+  const std::size_t first = marks.size();
+  if (zone.sphere) {
+    const double r = zone.sphere->radius;
+    const Vec3 x{r, 0, 0}, y{0, r, 0}, z{0, 0, r};
+    for (const auto& [a, b] : {std::pair{x, y}, {y, z}, {z, x}})
+      marks.push_back(ring_of(zone.sphere->centre, a, b, 48));
+  } else if (zone.box) {
+    const Vec3 middle = 0.5 * (zone.box->min + zone.box->max), half = zone.box->max - middle;
+    // A ring of four corners has its sides at 1 / sqrt(2) of its radius.
+    const double corner = std::numbers::sqrt2;
+    const Vec3 x{corner * half.x, 0, 0}, y{0, corner * half.y, 0}, z{0, 0, corner * half.z};
+    for (const double side : {-1.0, 1.0}) {
+      marks.push_back(ring_of(middle + Vec3{0, 0, side * half.z}, x, y, 4));
+      marks.push_back(ring_of(middle + Vec3{0, side * half.y, 0}, x, z, 4));
+    }
+  } else if (zone.plane) {
+    const Vec3 normal = zone.plane->normal / norm(zone.plane->normal);
+    const Vec3 helper = std::abs(normal.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 x = cross(normal, helper) / norm(cross(normal, helper)), y = cross(normal, x);
+    marks.push_back(ring_of(zone.plane->point, size * x, size * y, 4));
+  }
+  if (marks.size() > first) marks[first].label = zone.name;
+}
 
 /// The ways of a script's tools, a mark for each tool that is taken.
 void add_ways(const scenes::Script& script, const Model& model, std::vector<Mark>& marks) {
@@ -56,6 +95,7 @@ std::vector<Mark> marks_of(const scenes::SceneSpec& scene, const Model& model, c
     const Vec3 pointing = tool.pointing.value_or(Vec3{0, 0, -1});
     marks.push_back({Mark::Shape::arrow, {*at - length / norm(pointing) * pointing, *at}, kTool, tool.name});
   }
+  for (const scenes::ZoneSpec& zone : scene.forbidden) add_zone(zone, bounds.diagonal() / 2, marks);
   if (script) add_ways(*script, model, marks);
   return marks;
 }

@@ -183,6 +183,16 @@ TEST_F(AuthorTools, APreviewShowsMarksAndTheSettledShape) {
     EXPECT_GT(count(marked, red, green, blue), 8);
   }
   EXPECT_NE(ways, marked) << "the script's way is drawn as well";
+  // Outlines of forbidden zones.
+  EXPECT_EQ(count(marked, 255, 107, 92), 0);
+  for (const char* zone : {R"("sphere": {"centre_mm": [0, 0, 0], "radius_mm": 12})",
+                           R"("box": {"min_mm": [-12, -12, -12], "max_mm": [12, 12, 12]})",
+                           R"("plane": {"point_mm": [0, 0, 0], "normal": [0, 0, 1]})"}) {
+    std::string zoned = scene();
+    write("scene.json",
+          zoned.insert(zoned.find("\"organs\""), std::string(R"("forbidden": [{"name": "vessel", )") + zone + "}], "));
+    EXPECT_GT(count(draw("zone.png", {"--marks", "--overwrite"}), 255, 107, 92), 100) << zone;
+  }
 }
 
 TEST_F(AuthorTools, ALayerThinnerThanTheSpheresAreApartIsToldWithTheRadiusThatResolvesIt) {

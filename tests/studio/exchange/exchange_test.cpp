@@ -171,6 +171,11 @@ std::vector<std::string> after(const std::string& text, const std::string& key, 
 }
 
 TEST_F(Exchange, UsdHasAPieceForEachTimeInWhichTheCutStaysTheSame) {
+  const auto refused = export_to("session.usda", {"--strip", "--camera", "follow"});
+  EXPECT_EQ(refused.code, 2);
+  for (const char* option : {"--strip", "--camera"})
+    EXPECT_NE(refused.err.find(std::string(option) + ": error: is of pictures, and "), std::string::npos)
+        << refused.err;
   const auto outcome = export_to("session.usda", {"--from-s", "1", "--to-s", "4", "--fps", "5"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const std::string text = testing::slurp(path("session.usda"));
