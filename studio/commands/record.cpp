@@ -194,12 +194,14 @@ int run_record(RecordArguments arguments) {
   options.threads = arguments.threads > 0 ? arguments.threads : session::threads_for(start.model);
   session::TickTimes all_times(start.model);
   bool took_tool = false, took_blade = false;
+  std::optional<double> first_depth;  // of a tool in the first tick [m]
   const Result<session::RecordOutcome> outcome = [&] {
     ProgressLine progress("recording");
     options.progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); };
     session::RecentTimes times;
     options.watch = [&](const State&, const recordings::TickRecord& record, const session::RunOutcome& so_far) {
       all_times.add(record);
+      if (!first_depth) first_depth = std::max(record.of_hand(0).depth, record.of_hand(1).depth);
       for (std::size_t hand = 0; hand < kMostHands; ++hand) {
         const std::int32_t tool = record.inputs.hand(hand).tool;
         took_tool = took_tool || tool >= 0, took_blade = took_blade || start.model.is_scalpel(tool);
@@ -215,6 +217,12 @@ int run_record(RecordArguments arguments) {
     return session::record_session(start, *opened->source, arguments.output, arguments.overwrite, options);
   }();
   if (!outcome) return print_errors(outcome.errors());
+  constexpr double kDeepAtOnce = 1e-3;  // [m]
+  if (arguments.parent.empty() && first_depth.value_or(0) > kDeepAtOnce)
+    print_warnings(
+        {{arguments.output,
+          "a tool is " + output::short_number(1e3 * *first_depth, 3) + " mm deep in tissue in the first tick",
+          "where a hand begins outside, no force begins so suddenly"}});
   // A session that was ended before its script says nothing about the rest of it.
   const std::string& motion = arguments.source.motion;
   const std::string& planned = motion.empty() ? arguments.source.script : motion;

@@ -190,6 +190,19 @@ TEST_F(Record, AMotionThatTouchesNothingIsTold) {
       testing::run_ctpm({"record", "block.json", "--motion", "far.csv", "-o", "far.ctpm", "--fast"}, folder_.path());
   EXPECT_EQ(done.code, 0);
   EXPECT_NE(done.err.find("far.csv: warning: never touches any tissue"), std::string::npos) << done.err;
+  EXPECT_EQ(done.err.find("in the first tick"), std::string::npos) << done.err;
+}
+
+TEST_F(Record, AToolThatBeginsInTheTissueIsTold) {
+  write("deep.csv", "time_s,tool_x_mm,tool_y_mm,tool_z_mm\n0,0,0,15\n0.1,0,0,16\n");
+  const auto done =
+      testing::run_ctpm({"record", "block.json", "--motion", "deep.csv", "-o", "deep.ctpm", "--fast"}, folder_.path());
+  EXPECT_EQ(done.code, 0);
+  EXPECT_NE(done.err.find("mm deep in tissue in the first tick"), std::string::npos) << done.err;
+  const auto later = testing::run_ctpm(
+      {"record", "--continue", "deep.ctpm", "--at", "0.05", "--motion", "deep.csv", "-o", "later.ctpm", "--fast"},
+      folder_.path());
+  EXPECT_EQ(later.err.find("in the first tick"), std::string::npos) << later.err;
 }
 
 TEST_F(Record, AScriptOrAMotionMayComeThroughAPipe) {
