@@ -20,20 +20,14 @@ double height(Vec3 p, Vec3 gravity) {
   return g > 0 ? -dot(p, gravity) / g : p.z;
 }
 
-/// `region`: an anchor or a zone, of which box, sphere or plane is set.
-template <class Region>
-bool is_in_region(const Region& region, Vec3 p) {
-  if (region.sphere) return norm(p - region.sphere->centre) <= region.sphere->radius + kBorder;
-  if (region.plane) return dot(p - region.plane->point, region.plane->normal) <= kBorder * norm(region.plane->normal);
-  if (!region.box) return false;
-  const Vec3 low = region.box->min, high = region.box->max;
-  return p.x >= low.x - kBorder && p.y >= low.y - kBorder && p.z >= low.z - kBorder && p.x <= high.x + kBorder &&
-         p.y <= high.y + kBorder && p.z <= high.z + kBorder;
-}
-
 bool is_in(const AnchorSpec& anchor, Vec3 p, Vec3 gravity, double lowest) {
   if (anchor.lowest) return height(p, gravity) <= lowest + *anchor.lowest + kBorder;
-  return is_in_region(anchor, p);
+  if (anchor.sphere) return norm(p - anchor.sphere->centre) <= anchor.sphere->radius + kBorder;
+  if (anchor.plane) return dot(p - anchor.plane->point, anchor.plane->normal) <= kBorder * norm(anchor.plane->normal);
+  if (!anchor.box) return false;
+  const Vec3 low = anchor.box->min, high = anchor.box->max;
+  return p.x >= low.x - kBorder && p.y >= low.y - kBorder && p.z >= low.z - kBorder && p.x <= high.x + kBorder &&
+         p.y <= high.y + kBorder && p.z <= high.z + kBorder;
 }
 
 std::string extent_of(const FilledOrgan& organ) {

@@ -58,7 +58,7 @@ std::string person_of(const SessionReader& session, const fs::path& file, const 
 struct Scene {
   std::uint64_t with_names = 0, without_names = 0;
   bool is_anonymised = false;
-  std::vector<scenes::ZoneSpec> zones;  ///< that it forbids, without their names
+  std::optional<std::vector<scenes::ZoneSpec>> zones;  ///< that it forbids, without their names; none: not known
 };
 
 /// Forbidden zones without their names, which anonymised sessions lack.
@@ -72,8 +72,10 @@ Scene scene_of(const SessionReader& session) {
   const Result<scenes::SceneText> text = scenes::read_scene(session.start().scene_text, session.path());
   return {compare::scene_hash(model), compare::scene_hash(model, compare::Names::do_not_count),
           session::begins_at_elapsed_time(session),
-          text ? without_names(text->spec.forbidden) : std::vector<scenes::ZoneSpec>()};
+          text ? std::optional(without_names(text->spec.forbidden)) : std::nullopt};
 }
+
+bool forbid_the_same(const Scene& a, const Scene& b) { return !a.zones || !b.zones || *a.zones == *b.zones; }
 
 /// As compare::check_same_scene().
 bool are_same(const Scene& a, const Scene& b) {
@@ -100,7 +102,7 @@ class Gatherer {
       else if (!are_same(scene, *scenes_[task]))
         errors_.push_back(
             {file.string(), "is of another scene than " + first_[task], "the experts of a task work in one scene"});
-      else if (scene.zones != scenes_[task]->zones)
+      else if (!forbid_the_same(scene, *scenes_[task]))
         errors_.push_back(
             {file.string(), "forbids other zones than " + first_[task], "the experts of a task work in one scene"});
     }
@@ -131,7 +133,7 @@ class Gatherer {
       else if (tasks.size() != 1)
         errors_.push_back({file.string(), "may be of the tasks " + names_of(candidates) + ", which are in one scene",
                            "name its folder or the file after the task"});
-      else if (scene.zones != scenes_[tasks[0]]->zones)
+      else if (!forbid_the_same(scene, *scenes_[tasks[0]]))
         found_.left_out.push_back(file.string() +
                                   " was recorded with other forbidden zones than the experts' sessions");
       else
@@ -178,7 +180,8 @@ class Gatherer {
   void add(std::vector<FoundSession>& sessions, const SessionReader& session, const fs::path& file,
            const std::string& folder, std::size_t task) {
     const auto [other, is_new] = seen_.emplace(session.session_id(), file.string());
-    if (!is_new && fs::equivalent(file, other->second))
+    std::error_code ignored;
+    if (!is_new && &sessions == &found_.experts && fs::equivalent(file, other->second, ignored))
       errors_.push_back({file.string(),
                          "is in the experts' folder of two tasks, also of '" + course_.tasks[task].name + "'",
                          "each task has experts of its own"});
@@ -224,7 +227,8 @@ CourseFindings find_other_scenes(const scenes::CourseSpec& course, const scenes:
     const compare::Names names =
         session::begins_at_elapsed_time(*expert) ? compare::Names::do_not_count : compare::Names::count;
     const std::string reason = compare::scene_difference(expert->start().model, scene->built.model, names);
-    if (reason.empty() && scene_of(*expert).zones != without_names(scene->scene.spec.forbidden))
+    if (const Scene theirs = scene_of(*expert);
+        reason.empty() && theirs.zones && *theirs.zones != without_names(scene->scene.spec.forbidden))
       found.warnings.push_back({task.scene,
                                 "forbids other zones than when the experts of the task '" + task.name +
                                     "' worked in it: those of the sessions count, as in " + files.front().string(),

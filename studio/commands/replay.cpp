@@ -168,8 +168,10 @@ Command add_replay(CLI::App& program) {
   app->footer("Example: ctpm replay out/demo.ctpm --from-s 1 --to-s 3 --csv out/demo.csv");
   app->add_option("session", arguments->file, "Session file (.ctpm)")->required();
   add_time_range(*app, arguments->range);
-  app->add_option("--csv", arguments->csv,
-                  "Table with time, tool, force, depth, that of a blade along itself, and probes of each tick");
+  app->add_option(
+      "--csv", arguments->csv,
+      "Table with time, tool, force, depth, that of a blade along itself, and probes of each tick; a picture after "
+      "tick n says n + 1");
   app->add_flag("--overwrite", arguments->overwrite, "Replace an existing table");
   app->add_option("--times", arguments->times,
                   "Replay it so often, and print the least that each tick took: its own time, whatever else runs")
