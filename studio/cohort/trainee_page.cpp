@@ -2,16 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "studio/cohort/pages.h"
 #include "studio/cohort/stroke_part.h"
 #include "studio/compare/measure_table.h"
 #include "studio/compare/reach.h"
 #include "studio/output/number_text.h"
+#include "studio/session/session_info.h"
 
 namespace ctpm::cohort {
 namespace {
 
+namespace fs = std::filesystem;
 using output::fixed;
 using output::short_number;
 
@@ -134,6 +137,28 @@ reports::Table structures_table(const TaskResult& task, const Attempt& latest) {
   return table;
 }
 
+/// Which session each attempt is. The file of an anonymised one may be called after its trainee.
+reports::Table attempts_table(const std::vector<const Attempt*>& attempts) {
+  reports::Table table;
+  table.columns = {{"attempt", "attempt"},
+                   {"verdict", "passed", 4, true},
+                   {"begun", "begun"},
+                   {"duration", "duration [s]"},
+                   {"session", "session"}};
+  for (const Attempt* attempt : attempts) {
+    const FoundSession& session = attempt->session;
+    const auto verdict = [&] {
+      return *attempt->passed ? reports::ReportVerdict::met : reports::ReportVerdict::missed;
+    };
+    table.rows.push_back({std::int64_t(session.attempt), attempt->passed ? reports::Cell(verdict()) : reports::Cell(),
+                          session.is_elapsed ? reports::Cell() : reports::Cell(session::utc_text(session.begun_s)),
+                          attempt->duration_s,
+                          session.is_elapsed ? reports::Cell(std::string("anonymised"))
+                                             : reports::Cell(fs::path(session.file).filename().string())});
+  }
+  return without_empty_columns(std::move(table));
+}
+
 reports::Series level(const std::string& name, std::size_t count, double value) {
   return {.name = name,
           .x = {1, double(std::max<std::size_t>(2, count))},
@@ -237,6 +262,7 @@ Result<Done> add_task(reports::Report& report, const Cohort& cohort, const TaskR
     if (curves.size() < kMostCurves) curves.push_back(curve_plot(task, attempts, i));
   report.add_heading(task.task.name + ": " + std::to_string(attempts.size()) +
                      (attempts.size() == 1 ? " attempt" : " attempts"));
+  report.add_table(attempts_table(attempts));
   report.add_plots(curves);
   return Done{};
 }

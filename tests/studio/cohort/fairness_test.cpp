@@ -130,6 +130,7 @@ TEST_F(FairCohort, TheSurfaceOfABallCountsInAZoneAndSessionsWithOtherZonesAreLef
   EXPECT_EQ(std::stod(value_in("zone-out", "high", 1, "time_in_forbidden_zones_s")), 0);
   EXPECT_TRUE(holds(slurp(path("zone-out/trainee-deep.html")), "It was in forbidden zones: vessel for "));
   EXPECT_FALSE(holds(slurp(path("zone-out/trainee-high.html")), "It was in forbidden zones"));
+  EXPECT_TRUE(holds(slurp(path("zone-out/trainee-high.html")), "high.ctpm")) << "which session an attempt is";
 }
 
 }  // namespace
