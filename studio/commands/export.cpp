@@ -64,10 +64,25 @@ Errors check_pair(const ExportArguments& arguments, const std::string& what_outp
   return errors;
 }
 
+/// Options of pictures that were given for a file that holds shapes.
+Errors check_given(const CLI::App& app, const ExportArguments& arguments) {
+  // Of a pair check_pair() tells more.
+  const std::set<std::string> others{"session",   "output",         "at-s",   "from-s", "to-s",  "fps",
+                                     "overwrite", "allow-diverged", "beside", "ghost",  "align", "help"};
+  Errors errors;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_lnames().empty() ? option->get_name() : option->get_lnames().front();
+    if (option->count() > 0 && !others.contains(name))
+      errors.push_back({"--" + name, "is of pictures, and " + arguments.output + " holds shapes", ""});
+  }
+  return errors;
+}
+
 /// Exports the shape of the tissue for other programs.
-int run_shapes(const ExportArguments& arguments) {
-  if (const Errors errors = check_pair(arguments, " holds the shapes of one session"); !errors.empty())
-    return print_errors(errors);
+int run_shapes(const CLI::App& app, const ExportArguments& arguments) {
+  Errors errors = check_given(app, arguments);
+  append(errors, check_pair(arguments, " holds the shapes of one session"));
+  if (!errors.empty()) return print_errors(errors);
   Result<recordings::SessionReader> reader = recordings::SessionReader::open(arguments.files[0]);
   if (!reader) return print_errors(reader.errors());
   warn_of_physics(*reader);
@@ -242,25 +257,8 @@ int run_many(const ExportArguments& arguments) {
   return code;
 }
 
-/// Options of pictures that were given for a file that holds shapes.
-Errors check_given(const CLI::App& app, const ExportArguments& arguments) {
-  // Of a pair check_pair() tells more.
-  const std::set<std::string> others{"session",   "output",         "at-s",   "from-s", "to-s",  "fps",
-                                     "overwrite", "allow-diverged", "beside", "ghost",  "align", "help"};
-  Errors errors;
-  for (const CLI::Option* option : app.get_options()) {
-    const std::string name = option->get_lnames().empty() ? option->get_name() : option->get_lnames().front();
-    if (option->count() > 0 && !others.contains(name))
-      errors.push_back({"--" + name, "is of pictures, and " + arguments.output + " holds shapes", ""});
-  }
-  return errors;
-}
-
 int run_export(const CLI::App& app, ExportArguments& arguments) {
-  if (exchange::is_shape_file(arguments.output) && arguments.files.size() == 1) {
-    if (const Errors errors = check_given(app, arguments); !errors.empty()) return print_errors(errors);
-    return run_shapes(arguments);
-  }
+  if (exchange::is_shape_file(arguments.output) && arguments.files.size() == 1) return run_shapes(app, arguments);
   Errors errors = check_arguments(arguments);
   const Result<render::PictureSize> size = render::parse_picture_size(arguments.size);
   if (size)
