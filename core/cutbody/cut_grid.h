@@ -132,6 +132,7 @@ class CutGrid {
   struct NodeBox {
     Node low, high;
     void add(Node n);
+    bool is_empty() const { return low[0] > high[0]; }
   };
   NodeBox take_changed();
   /// Whether the cube at a node has a node in a box.

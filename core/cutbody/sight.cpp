@@ -129,6 +129,7 @@ bool Sight::go_on(CutGrid::Node home, Index hops, const Rows& last, Rows& visite
 /// Finds the nodes again from which an edge across a cut is fewer edges away than are seen along, where edges in a box
 /// have changed.
 void Sight::find_beside_cut(CutGrid::NodeBox changed) {
+  if (changed.is_empty()) return;
   CutGrid::Node low, high, first, last;
   for (std::size_t a = 0; a < 3; ++a) {
     const Index end = grid_.extent()[a] - 1;

@@ -155,5 +155,25 @@ TEST(Sight, TellsWhichNodesSeeOtherwise) {
   EXPECT_LT(told, rounds * nodes.size() / 2);
 }
 
+/// A cut may sever elements, or go on, without crossing another edge: the box of what changed is empty then.
+TEST(Sight, AnEmptyBoxChangesNothingHoweverLargeTheOrgan) {
+  const Model model = testing::make_skinned_block(5, 60, 5, network::Structure::ctpm, 0.003);
+  CutGrid grid(model, 0);
+  ASSERT_GT(grid.extent()[1], 4 * Sight::kMostHops);
+  Sight sight(grid);
+  State state = rest_state(model);
+  cutting::NewlySwept newly;
+  newly.fill(1), newly.back() = 0;
+  const auto front = [](double y) { return testing::straight_front({0.0013, y, 0.011}, {0.004, y, 0.06}); };
+  (void)grid.take_changed();
+  cutting::add_swept(state, front(-0.05), front(0.05), newly);
+  ASSERT_TRUE(grid.update(state));
+  sight.update(grid.take_changed());
+  const CutGrid::NodeBox nothing = grid.take_changed();
+  EXPECT_TRUE(nothing.is_empty());
+  sight.update(nothing);
+  EXPECT_EQ(count_wrong(sight, grid), 0);
+}
+
 }  // namespace
 }  // namespace ctpm
