@@ -20,14 +20,21 @@ double height(Vec3 p, Vec3 gravity) {
   return g > 0 ? -dot(p, gravity) / g : p.z;
 }
 
+/// Whether a ball, or a point, reaches into an anchor or a zone, of which box, sphere or plane is set.
+template <class Region>
+bool reaches(const Region& region, Vec3 p, double radius) {
+  if (region.sphere) return norm(p - region.sphere->centre) <= region.sphere->radius + radius + kBorder;
+  if (region.plane)
+    return dot(p - region.plane->point, region.plane->normal) <= (radius + kBorder) * norm(region.plane->normal);
+  if (!region.box) return false;
+  const Vec3 low = region.box->min, high = region.box->max;
+  const Vec3 nearest{std::clamp(p.x, low.x, high.x), std::clamp(p.y, low.y, high.y), std::clamp(p.z, low.z, high.z)};
+  return norm(p - nearest) <= radius + kBorder;
+}
+
 bool is_in(const AnchorSpec& anchor, Vec3 p, Vec3 gravity, double lowest) {
   if (anchor.lowest) return height(p, gravity) <= lowest + *anchor.lowest + kBorder;
-  if (anchor.sphere) return norm(p - anchor.sphere->centre) <= anchor.sphere->radius + kBorder;
-  if (anchor.plane) return dot(p - anchor.plane->point, anchor.plane->normal) <= kBorder * norm(anchor.plane->normal);
-  if (!anchor.box) return false;
-  const Vec3 low = anchor.box->min, high = anchor.box->max;
-  return p.x >= low.x - kBorder && p.y >= low.y - kBorder && p.z >= low.z - kBorder && p.x <= high.x + kBorder &&
-         p.y <= high.y + kBorder && p.z <= high.z + kBorder;
+  return reaches(anchor, p, 0);
 }
 
 std::string extent_of(const FilledOrgan& organ) {
@@ -44,16 +51,7 @@ std::string extent_of(const FilledOrgan& organ) {
 
 }  // namespace
 
-bool is_in(const ZoneSpec& zone, Vec3 centre, double radius) {
-  if (zone.sphere) return norm(centre - zone.sphere->centre) <= zone.sphere->radius + radius + kBorder;
-  if (zone.plane)
-    return dot(centre - zone.plane->point, zone.plane->normal) <= (radius + kBorder) * norm(zone.plane->normal);
-  if (!zone.box) return false;
-  const Vec3 low = zone.box->min, high = zone.box->max;
-  const Vec3 nearest{std::clamp(centre.x, low.x, high.x), std::clamp(centre.y, low.y, high.y),
-                     std::clamp(centre.z, low.z, high.z)};
-  return norm(centre - nearest) <= radius + kBorder;
-}
+bool is_in(const ZoneSpec& zone, Vec3 centre, double radius) { return reaches(zone, centre, radius); }
 
 bool is_in(const ZoneSpec& zone, Vec3 from, Vec3 to) {
   if (is_in(zone, from) || is_in(zone, to)) return true;

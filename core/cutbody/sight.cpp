@@ -58,8 +58,7 @@ void Sight::set(Bits& bits, CutGrid::Node n, bool value) {
 
 void Sight::update(CutGrid::NodeBox changed) {
   ++round_, changed_.clear();
-  find_edges(changed);
-  find_beside_cut(changed);
+  if (!changed.is_empty()) find_edges(changed), find_beside_cut(changed);
   if (changed.low == CutGrid::Node{} && changed.high == grid_.extent()) {
     // Anything may have changed: it is found again when it is asked for.
     view_.clear(), changed_in_.assign(changed_in_.size(), round_);
@@ -129,7 +128,6 @@ bool Sight::go_on(CutGrid::Node home, Index hops, const Rows& last, Rows& visite
 /// Finds the nodes again from which an edge across a cut is fewer edges away than are seen along, where edges in a box
 /// have changed.
 void Sight::find_beside_cut(CutGrid::NodeBox changed) {
-  if (changed.is_empty()) return;
   CutGrid::Node low, high, first, last;
   for (std::size_t a = 0; a < 3; ++a) {
     const Index end = grid_.extent()[a] - 1;

@@ -222,7 +222,7 @@ int run_record(RecordArguments arguments) {
     print_warnings(
         {{arguments.output,
           "a tool is " + output::short_number(1e3 * *first_depth, 3) + " mm deep in tissue in the first tick",
-          "where a hand begins outside, no force begins so suddenly"}});
+          "begin with the tool outside: the first forces are of no hand"}});
   // A session that was ended before its script says nothing about the rest of it.
   const std::string& motion = arguments.source.motion;
   const std::string& planned = motion.empty() ? arguments.source.script : motion;

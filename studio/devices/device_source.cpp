@@ -82,7 +82,7 @@ void DeviceSource::aim(double now) {
 std::optional<Inputs> DeviceSource::next(std::int64_t, const stepping::StepReport& last) {
   const double now = clock_();
   const bool has_new_pose = take_reports(now);
-  if (!has_ticked_) waits_ = {}, ways_ = {}, guard_.watch_from(now);  // before the first tick no tick was there
+  if (!has_ticked_) waits_ = {}, ways_ = {}, guard_.watch_from(now);  // what came before waited for the first tick
   has_ticked_ = true;
   guard_.look(now);
   if (!guard_.verdict().empty()) return std::nullopt;

@@ -78,7 +78,7 @@ Errors find_odd_motion(const Motion& motion, const std::string& file) {
   found.push_back({line_of(first),
                    "nothing was written for " + short_number(first.seconds, 3) + " s, in which the tool went " +
                        short_number(1e3 * first.way, 3) + " mm" +
-                       (pauses > 1 ? ", and in " + std::to_string(pauses - 1) + " more pauses" : std::string()),
+                       (pauses > 1 ? ", the first of " + std::to_string(pauses) + " such pauses" : std::string()),
                    "it is taken to have gone straight"});
   return found;
 }
