@@ -108,7 +108,8 @@ reports::Table band_table(const Cohort& cohort, const TaskResult& task) {
   table.caption =
       "Intervals of means: " + std::to_string(cohort.course.intervals.resamples) + " bootstrap samples with the seed " +
       std::to_string(cohort.course.intervals.seed) +
-      "; of few values they are too narrow, and of one there is none. Trainees are counted with their latest "
+      "; of few values they are too narrow, and of one or of equal ones there is none. Trainees are counted with their "
+      "latest "
       "attempts.";
   return without_empty_columns(std::move(table));
 }
